@@ -54,6 +54,11 @@ void require_edges(const NumberedEdges& kept, std::span<const EdgeEnds> edges,
   }
 }
 
+/// Whether the edge of half-edge h is in an ascending list.
+bool contains_edge(std::span<const EdgeEnds> edges, std::span<const Triangle> welded, Index h) {
+  return std::binary_search(edges.begin(), edges.end(), welded_edge(welded, h));
+}
+
 }  // namespace
 
 std::vector<EdgeEnds> path_edges(std::span<const Index> first_at, const SeamPath& path,
@@ -97,10 +102,6 @@ std::vector<EdgeEnds> kept_edges(const SeamRules& seams, std::span<const Index> 
                                             ", too; leave it out of one of them");
   }
   return edges;
-}
-
-bool contains_edge(std::span<const EdgeEnds> edges, std::span<const Triangle> welded, Index h) {
-  return std::binary_search(edges.begin(), edges.end(), welded_edge(welded, h));
 }
 
 void mark_kept(std::span<const Triangle> welded, std::span<const EdgeEnds> kept, Chart& chart) {

@@ -30,9 +30,6 @@ std::vector<EdgeEnds> path_edges(std::span<const Index> first_at, const SeamPath
 std::vector<EdgeEnds> kept_edges(const SeamRules& seams, std::span<const Index> first_at,
                                  std::span<const Triangle> welded);
 
-/// Whether the edge of half-edge h is in an ascending list.
-bool contains_edge(std::span<const EdgeEnds> edges, std::span<const Triangle> welded, Index h);
-
 /// Sets Chart::avoid of kept edges to kKept. Edges that are cut already are left out: there is
 /// nothing to keep.
 void mark_kept(std::span<const Triangle> welded, std::span<const EdgeEnds> kept, Chart& chart);

@@ -23,13 +23,15 @@ bool is_collapsed(const UnwrappedSurface& unwrapped, Index h) {
          !is_apart(unwrapped, previous, h);
 }
 
-}  // namespace
-
+/// Whether the two sides of an edge have different UVs and both faces have area on the page. A face
+/// without area lies on one of its edges, and its other edges are no seams.
 bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin) {
   const bool is_open =
       is_apart(unwrapped, h, next_halfedge(twin)) || is_apart(unwrapped, next_halfedge(h), twin);
   return is_open && !is_collapsed(unwrapped, h) && !is_collapsed(unwrapped, twin);
 }
+
+}  // namespace
 
 Halfedges halfedges_by_position(const TriMesh& mesh, const std::stop_token& stop) {
   const std::vector<Triangle> welded = renumber(mesh.faces, weld(mesh.positions, stop));

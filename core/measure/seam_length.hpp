@@ -11,10 +11,6 @@ namespace unwrapd::measure {
 /// The twins of a mesh after vertices at one position are merged.
 Halfedges halfedges_by_position(const TriMesh& mesh, const std::stop_token& stop = {});
 
-/// Whether the two sides of an edge have different UVs and both faces have area on the page. A face
-/// without area lies on one of its edges, and its other edges are no seams.
-bool is_seam(const UnwrappedSurface& unwrapped, Index h, Index twin);
-
 /// 3D length of the edges between two faces whose UVs differ on both sides, mesh units. Edges are
 /// found by position, so that cuts of the input count as well. Boundaries, non-manifold edges and
 /// edges of faces without area on the page do not count.

@@ -13,6 +13,7 @@
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,14 @@ constexpr double kMostIslands = 12;
   throw Error(ErrorCode::does_not_fit,
               "The other islands do not fit beside the locked ones; unlock some, raise max_pages, "
               "or lower padding.",
+              "/locked_islands");
+}
+
+[[noreturn]] void refuse_large(std::size_t number) {
+  throw Error(ErrorCode::does_not_fit,
+              "One of the islands that are not locked (the " + std::to_string(number + 1) +
+                  "th) is larger than a page; islands beside locked ones keep their sizes: make it "
+                  "smaller, or lock none.",
               "/locked_islands");
 }
 
@@ -136,14 +145,22 @@ bool is_inside(const Vec2& p, const charts::Outline& outline) {
   return winding != 0;
 }
 
+struct BoundedOutline {
+  explicit BoundedOutline(const charts::Outline& outline) : sides(&outline) {
+    std::tie(low, high) = bounds_of_outline(outline);
+  }
+
+  const charts::Outline* sides;
+  Vec2 low, high;
+};
+
 /// Whether two islands overlap or come nearer to each other than so much.
-bool is_nearer(const charts::Outline& one, const charts::Outline& other, double distance) {
-  const auto [low, high] = bounds_of_outline(other);
+bool is_nearer(const BoundedOutline& own, const BoundedOutline& there, double distance) {
   const Vec2 reach = Vec2::Constant(distance);
-  const Vec2 least = low - reach, most = high + reach;
-  const auto [own_low, own_high] = bounds_of_outline(one);
-  if ((own_high.array() < least.array()).any() || (own_low.array() > most.array()).any())
+  const Vec2 least = there.low - reach, most = there.high + reach;
+  if ((own.high.array() < least.array()).any() || (own.low.array() > most.array()).any())
     return false;
+  const charts::Outline &one = *own.sides, &other = *there.sides;
   if (is_inside(one.front()[0], other) || is_inside(other.front()[0], one)) return true;
   for (const auto& side : one) {
     const Vec2 a = side[0].cwiseMin(side[1]), b = side[0].cwiseMax(side[1]);
@@ -156,11 +173,10 @@ bool is_nearer(const charts::Outline& one, const charts::Outline& other, double 
   return false;
 }
 
-bool keeps_border(const charts::Outline& own, const PageOptions& page, double padding) {
-  const int number = page_holding(own, page.aspect(), page.packing.max_pages);
-  const auto [low, high] = bounds_of_outline(own);
-  return number >= 0 && low.x() >= number + padding && high.x() <= number + 1 - padding &&
-         low.y() >= padding && high.y() <= page.aspect() - padding;
+bool keeps_border(const BoundedOutline& own, const PageOptions& page, double padding) {
+  const int number = page_holding(*own.sides, page.aspect(), page.packing.max_pages);
+  return number >= 0 && own.low.x() >= number + padding && own.high.x() <= number + 1 - padding &&
+         own.low.y() >= padding && own.high.y() <= page.aspect() - padding;
 }
 
 }  // namespace
@@ -215,17 +231,18 @@ std::vector<std::size_t> well_placed(std::span<const charts::Outline> islands,
   std::ranges::stable_sort(order, std::greater(),
                            [&](std::size_t k) { return std::abs(charts::area_of(islands[k])); });
   const double padding = static_cast<double>(page.padding) / page.resolution - kRoundingOfUvs;
-  std::vector<const charts::Outline*> there;
-  for (const charts::Outline& own : locked) there.push_back(&own);
+  std::vector<BoundedOutline> there;
+  for (const charts::Outline& own : locked) there.emplace_back(own);
   for (const std::size_t k : order) {
-    throw_if_cancelled(stop);
-    const charts::Outline& own = islands[k];
+    const BoundedOutline own(islands[k]);
     if (!keeps_border(own, page, padding)) continue;
-    if (std::ranges::any_of(
-            there, [&](const charts::Outline* other) { return is_nearer(own, *other, padding); }))
+    if (std::ranges::any_of(there, [&](const BoundedOutline& other) {
+          throw_if_cancelled(stop);
+          return is_nearer(own, other, padding);
+        }))
       continue;
     well.push_back(k);
-    there.push_back(&own);
+    there.push_back(own);
   }
   return well;
 }
@@ -235,8 +252,8 @@ std::vector<std::size_t> well_placed(std::span<const charts::Outline> islands,
 PackResult pack_around(std::span<const charts::Outline> islands,
                        std::span<const charts::Outline> locked, const PageOptions& page,
                        Executor& executor) {
-  for (const charts::Outline& own : islands)
-    if (is_beyond_page(own, page.aspect())) refuse_locked();
+  for (std::size_t k = 0; k < islands.size(); ++k)
+    if (is_beyond_page(islands[k], page.aspect())) refuse_large(k);
   if (auto all = packed_around(islands, locked, page, executor)) return std::move(*all);
   const std::vector<std::size_t> well = well_placed(islands, locked, page, executor.stop());
   for (const double share : {0.5, 0.75, 1.0}) {

@@ -1,6 +1,7 @@
 #include "core/pipeline/analyse.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "core/base/error.hpp"
 #include "core/charts/repair_surfaces.hpp"
@@ -8,10 +9,26 @@
 
 namespace unwrapd::pipeline {
 
+namespace {
+
+void require_meshes(std::span<const SeamPath> paths, std::size_t meshes,
+                    const std::string& option) {
+  for (std::size_t k = 0; k < paths.size(); ++k)
+    if (paths[k].surface < 0 || static_cast<std::size_t>(paths[k].surface) >= meshes)
+      throw Error(ErrorCode::invalid_option,
+                  option + ": there is no mesh " + std::to_string(paths[k].surface) +
+                      "; name one of the asset's " + std::to_string(meshes) + ", counted from 0",
+                  "/" + option + "/" + std::to_string(k) + "/mesh");
+}
+
+}  // namespace
+
 std::vector<charts::Charts> components(std::span<const Surface> surfaces, charts::SeamRules rules) {
   const auto is_empty = [](const Surface& surface) { return surface.mesh.faces.empty(); };
   if (std::all_of(surfaces.begin(), surfaces.end(), is_empty))
     throw Error(ErrorCode::no_triangles, "the asset has no triangles; there is nothing to unwrap");
+  require_meshes(rules.paths, surfaces.size(), "seam_edges");
+  require_meshes(rules.kept, surfaces.size(), "keep_edges");
   std::vector<charts::Charts> parts;
   parts.reserve(surfaces.size());
   for (const Surface& surface : surfaces) {

@@ -258,7 +258,7 @@ Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,
       ++report;
     }
   }
-  if (auto note = note_kept_edges(surfaces, all, unwrapped.surfaces, options.keep_edges, stop))
+  if (auto note = note_kept_edges(surfaces, unwrapped.surfaces, options.keep_edges, stop))
     layout.report.notes.push_back(std::move(*note));
   add_totals(layout.report);
   unwrapped.report = std::move(layout.report);

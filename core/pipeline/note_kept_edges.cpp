@@ -1,15 +1,58 @@
 #include "core/pipeline/note_kept_edges.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "core/charts/path_edges.hpp"
-#include "core/measure/seam_length.hpp"
+#include "core/mesh/edges.hpp"
 #include "core/mesh/weld.hpp"
 
 namespace unwrapd::pipeline {
+namespace {
 
-std::optional<Note> note_kept_edges(std::span<const Surface> surfaces, const Prepared& all,
+/// The UVs of a face at the ends of one of its edges, that of the lower welded vertex first.
+using EndUvs = std::array<Vec2, 2>;
+
+EndUvs uvs_at(const UnwrappedSurface& unwrapped, std::span<const Triangle> welded, Index h) {
+  const Vec2& from = unwrapped.uv[static_cast<std::size_t>(start_of(unwrapped.faces, h))];
+  const Vec2& to = unwrapped.uv[static_cast<std::size_t>(end_of(unwrapped.faces, h))];
+  return start_of(welded, h) < end_of(welded, h) ? EndUvs{from, to} : EndUvs{to, from};
+}
+
+/// Whether a face has no area on the page: it lies on one of its edges, and its others are no
+/// seams.
+bool is_collapsed(const UnwrappedSurface& unwrapped, Index face) {
+  const Triangle& corners = unwrapped.faces[static_cast<std::size_t>(face)];
+  const auto uv = [&](std::size_t k) -> const Vec2& {
+    return unwrapped.uv[static_cast<std::size_t>(corners[k])];
+  };
+  return uv(0) == uv(1) || uv(1) == uv(2) || uv(2) == uv(0);
+}
+
+/// How many edges have faces with different UVs; also edges of three faces or more. edges:
+/// ascending.
+std::size_t cut_edges_of(const UnwrappedSurface& unwrapped, std::span<const Triangle> welded,
+                         std::span<const EdgeEnds> edges) {
+  std::vector<std::optional<EndUvs>> first(edges.size());
+  std::vector<char> is_cut(edges.size(), 0);
+  for (Index h = 0; h < static_cast<Index>(3 * welded.size()); ++h) {
+    const Index a = start_of(welded, h), b = end_of(welded, h);
+    const EdgeEnds edge{std::min(a, b), std::max(a, b)};
+    const auto at = std::ranges::lower_bound(edges, edge);
+    if (at == edges.end() || *at != edge || is_collapsed(unwrapped, face_of(h))) continue;
+    const auto k = static_cast<std::size_t>(at - edges.begin());
+    const EndUvs own = uvs_at(unwrapped, welded, h);
+    if (first[k] && *first[k] != own) is_cut[k] = 1;
+    first[k] = own;
+  }
+  return static_cast<std::size_t>(std::ranges::count(is_cut, 1));
+}
+
+}  // namespace
+
+std::optional<Note> note_kept_edges(std::span<const Surface> surfaces,
                                     std::span<const UnwrappedSurface> unwrapped,
                                     std::span<const SeamPath> kept, const std::stop_token& stop) {
   if (kept.empty()) return std::nullopt;
@@ -21,11 +64,7 @@ std::optional<Note> note_kept_edges(std::span<const Surface> surfaces, const Pre
     const std::vector<EdgeEnds> edges =
         charts::kept_edges({.surface = static_cast<Index>(s), .kept = kept}, first_at, welded);
     count += edges.size();
-    const std::vector<Index>& twin = all.surfaces[s].by_position->twin;
-    for (Index h = 0; h < static_cast<Index>(twin.size()); ++h)
-      if (h < twin[h] && charts::contains_edge(edges, welded, h) &&
-          measure::is_seam(unwrapped[s], h, twin[h]))
-        ++cut;
+    cut += cut_edges_of(unwrapped[s], welded, edges);
   }
   if (cut == 0) return std::nullopt;
   return Note{NoteCode::kept_edges_cut,

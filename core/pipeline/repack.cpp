@@ -17,6 +17,7 @@
 #include "core/pack/pack.hpp"
 #include "core/pack/pack_around.hpp"
 #include "core/pipeline/assemble.hpp"
+#include "core/pipeline/locked_islands.hpp"
 #include "core/pipeline/place_islands.hpp"
 
 namespace unwrapd::pipeline {
@@ -67,53 +68,6 @@ void widen_to_page(charts::UvIslands& islands, const PageSize& page) {
   widen_outlines(islands, page);
 }
 
-[[noreturn]] void refuse_lock(std::size_t number, const std::string& why) {
-  throw Error(ErrorCode::invalid_option, why, "/locked_islands/" + std::to_string(number));
-}
-
-/// The island that a face lies in. number: of its entry of locked_islands.
-std::size_t island_at(std::span<const Surface> surfaces, const std::vector<charts::UvIslands>& all,
-                      const IslandAtFace& at, std::size_t number) {
-  const auto surface = static_cast<std::size_t>(at.surface);
-  if (at.surface < 0 || surface >= surfaces.size())
-    refuse_lock(number, "there is no mesh " + std::to_string(at.surface) +
-                            "; name one of the asset's " + std::to_string(surfaces.size()) +
-                            ", counted from 0");
-  const Index faces = surfaces[surface].mesh.face_count();
-  if (at.face < 0 || at.face >= faces)
-    refuse_lock(number, "there is no face " + std::to_string(at.face) +
-                            "; name one of the mesh's " + std::to_string(faces) +
-                            ", counted from 0");
-  const std::vector<charts::Chart>& charts = all[surface].charts.charts;
-  const auto found = std::ranges::find_if(charts, [&](const charts::Chart& chart) {
-    return std::ranges::binary_search(chart.face_source, at.face);
-  });
-  if (found == charts.end())
-    refuse_lock(number, "face " + std::to_string(at.face) +
-                            " has no texture coordinates; name a face of an island");
-  return static_cast<std::size_t>(found - charts.begin());
-}
-
-/// Of each surface, one an island, 1: it stays. The outlines are in page units.
-std::vector<std::vector<char>> locked_islands(std::span<const Surface> surfaces,
-                                              const std::vector<charts::UvIslands>& all,
-                                              const UnwrapOptions& options) {
-  std::vector<std::vector<char>> is_locked;
-  for (const charts::UvIslands& own : all) is_locked.emplace_back(own.maps.size(), 0);
-  for (std::size_t i = 0; i < options.locked_islands.size(); ++i) {
-    const IslandAtFace& at = options.locked_islands[i];
-    const std::size_t k = island_at(surfaces, all, at, i);
-    const auto s = static_cast<std::size_t>(at.surface);
-    const int pages = options.packing.max_pages;
-    if (pack::page_holding(all[s].outlines[k], options.page_size().aspect(), pages) < 0)
-      refuse_lock(i, "the island of face " + std::to_string(at.face) +
-                         " does not lie on one of the " + std::to_string(pages) +
-                         " pages; raise max_pages, or do not lock it, so that it is packed");
-    is_locked[s][k] = 1;
-  }
-  return is_locked;
-}
-
 void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& all,
            const UnwrapOptions& options, Executor& executor, Report& report) {
   IslandsToPlace islands;
@@ -139,7 +93,8 @@ void place_around(std::span<const Surface> surfaces, std::vector<charts::UvIslan
                   const UnwrapOptions& options, Executor& executor, Report& report) {
   report.page = options.page_size();
   for (charts::UvIslands& own : all) widen_outlines(own, report.page);
-  const std::vector<std::vector<char>> is_locked = locked_islands(surfaces, all, options);
+  const std::vector<std::vector<char>> is_locked =
+      locked_islands(surfaces, all, options, executor.stop());
   std::vector<charts::Outline> locked, free;
   std::vector<UvMap*> maps;
   double covered = 0;

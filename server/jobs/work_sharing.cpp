@@ -83,8 +83,7 @@ class WorkSharing::Desk final : public work::WorkDesk {
   void check_help() {
     if (!is_helper_) return;
     const auto may_stay = tried<bool>([&]() -> std::optional<bool> {
-      return sharing_.store_.counts().waiting == 0 &&
-             sharing_.store_.is_running(job_.seq, job_.attempt);
+      return !sharing_.is_any_waiting() && sharing_.store_.is_running(job_.seq, job_.attempt);
     });
     if (stop_.stop_requested() || !may_stay.value_or(false)) help_no_longer();
   }
@@ -121,6 +120,12 @@ std::shared_ptr<HelpedJob> WorkSharing::find() {
   helped_.push_back(helped);
   return helped;
 }
+
+bool WorkSharing::is_running(const HelpedJob& helped) {
+  return store_.is_running(helped.record.seq, helped.record.attempt);
+}
+
+bool WorkSharing::is_any_waiting() { return store_.counts().waiting > 0; }
 
 void WorkSharing::leave(const HelpedJob& helped, bool failed) {
   const auto took = std::chrono::duration_cast<milliseconds>(Clock::now() - helped.began).count();

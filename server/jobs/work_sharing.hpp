@@ -48,6 +48,10 @@ class WorkSharing {
 
   /// A job to help with, if there is one.
   std::shared_ptr<HelpedJob> find();
+  /// Whether the job that is helped still runs. Throws what the store throws.
+  [[nodiscard]] bool is_running(const HelpedJob& helped);
+  /// Whether any job waits for a worker. Throws what the store throws.
+  [[nodiscard]] bool is_any_waiting();
   /// Once the help has come to an end; failed: this node does not help with this job again.
   void leave(const HelpedJob& helped, bool failed);
   /// Stops all helping, for good.

@@ -37,13 +37,15 @@ std::optional<int> JobStore::claim_bundle(const StageOfJob& of, bool is_helper) 
   });
 }
 
+/// Bytes that were kept before turned out to be unsound.
 void JobStore::keep_bundle(const StageOfJob& of, int bundle, std::string_view bytes) {
   std::string text;
   asset::append_base64(text, bytes);
   update(
       "INSERT INTO shared_bundles (job, stage, bundle, bytes) SELECT job, stage, ?3, ?4"
-      " FROM shared_stages WHERE job = ?1 AND stage = ?2 ON CONFLICT DO NOTHING",
-      of.job, of.stage, std::int64_t{bundle}, text);
+      " FROM shared_stages WHERE job = ?1 AND stage = ?2 AND attempt = ?5"
+      " ON CONFLICT (job, stage, bundle) DO UPDATE SET bytes = excluded.bytes",
+      of.job, of.stage, std::int64_t{bundle}, text, std::int64_t{of.attempt});
 }
 
 std::optional<std::string> JobStore::bundle(const StageOfJob& of, int bundle) {

@@ -106,7 +106,7 @@ std::optional<std::string> DeskConversation::answer(const Frame& frame) {
     if (bundles < 1 || bundles > kMostBundles) invalid();
     const auto claim = desk_->claim(stage, bundles);
     if (!claim) return packed_answer(-1, std::nullopt);
-    if (!claim->made) claimed_[stage].insert(claim->bundle);
+    claimed_[stage].insert(claim->bundle);  // what was made of it may turn out unsound
     return packed_answer(claim->bundle, claim->made);
   }
   const int bundle = bundle_in(from);

@@ -5,7 +5,7 @@ import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
 import { scene } from "../bench/made_scene.mjs";
-import { dataDirectory, Server } from "../fault/server.mjs";
+import { dataDirectory, ENDLESS, Server } from "../fault/server.mjs";
 import { Farm, freePort, options, send, sha256Of } from "./nodes.mjs";
 
 const SCENE = scene(150, 10, 18); // 120,000 faces
@@ -131,6 +131,26 @@ test("where the node of the job is killed, the next attempt finds what was made"
   assert.equal(await resultOf(front, id), await expected(t));
   assert.equal(farm.query(`SELECT attempt FROM jobs WHERE id = '${id}'`), "2");
   assert.equal(leftOver(farm), 0);
+});
+
+test("a helper leaves at once where its job is cancelled", async (t) => {
+  const node = await Server.start(dataDirectory(t), "--workers", "2", "--threads", "1", "--log-level", "info");
+  const body = scene(2, 200, 200); // two bundles, each of which takes longer than this test
+  const job = await (await send(node, "/v1/jobs?effort=best&max_distortion=2.001", { headers: GLB, body })).json();
+  await node.until(job.id, () => node.log.includes("helping with a job"));
+  await sleep(5000); // the helper has read the scene and begun its bundle
+  assert.equal((await node.job(job.id)).state, "running");
+  const path = (id) => `${node.url}/v1/jobs/${id}`;
+  await fetch(path(job.id), { method: "DELETE" });
+  const [query, size] = ENDLESS;
+  const both = [];
+  for (const padding of [2, 3]) both.push((await (await send(node, `/v1/jobs?preset=paper&${query}&padding=${padding}`, { size })).json()).id);
+  const begun = Date.now();
+  for (const id of both) await node.until(id, ({ state }) => state === "running");
+  t.diagnostic(`both workers were there after ${Date.now() - begun} ms`);
+  assert.ok(Date.now() - begun < 10_000);
+  for (const id of both) await fetch(path(id), { method: "DELETE" });
+  await node.end("SIGTERM");
 });
 
 test("a full farm helps nobody, and all jobs end", options, async (t) => {

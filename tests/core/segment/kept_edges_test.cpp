@@ -181,6 +181,18 @@ TEST(KeptEdges, BetweenClustersAreKeptOnTheCoarseMesh) {
   EXPECT_EQ(found, kept);
 }
 
+/// Three squares at one edge: two of them can lie side by side, the third is cut off.
+TEST(KeptEdges, OfThreeFacesAreCountedWhereTheyAreCut) {
+  const TriMesh fan{
+      {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}, {-1, 0, 0}, {-1, 0, 1}, {0, 1, 0}, {0, 1, 1}},
+      {{0, 2, 3}, {0, 3, 1}, {1, 5, 4}, {1, 4, 0}, {0, 6, 7}, {0, 7, 1}}};
+  const Unwrapped unwrapped = unwrapped_of(fan, {.keep_edges = {{0, {0, 1}}, {0, {0, 3}}}});
+  ASSERT_TRUE(says_cut(unwrapped));
+  const auto note =
+      std::ranges::find(unwrapped.report.notes, NoteCode::kept_edges_cut, &Note::code);
+  EXPECT_EQ(note->text.substr(0, 7), "1 of 2 ");
+}
+
 TEST(KeptEdges, AreTheSameForAnyThreads) {
   const Surface surface = surface_of(sphere(2));
   const UnwrapOptions options{
@@ -208,6 +220,8 @@ TEST(KeptEdges, AreRefusedWhereTheyAreNoEdgesOrSeams) {
   EXPECT_EQ(where({.keep_edges = {{0, {3, 4}}, {0, {0, 8}}}}), "/keep_edges/1");
   EXPECT_EQ(where({.keep_edges = {{0, {3, 99}}}}), "/keep_edges/0");
   EXPECT_EQ(where({.keep_edges = {{0, {3}}}}), "/keep_edges/0/vertices");
+  EXPECT_EQ(where({.keep_edges = {{0, {3, 4}}, {1, {3, 4}}}}), "/keep_edges/1/mesh");
+  EXPECT_EQ(where({.seam_edges = {{7, {3, 4}}}}), "/seam_edges/0/mesh");
   EXPECT_EQ(where({.seam_edges = {{0, {3, 4, 5}}}, .keep_edges = {{0, {0, 1}}, {0, {5, 4}}}}),
             "/keep_edges/1");
   mesh.positions.push_back(mesh.positions[4]);  // a copy, by which one face knows vertex 4

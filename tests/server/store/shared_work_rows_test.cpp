@@ -58,8 +58,8 @@ TEST_F(SharedWorkRows, ABundleHasTheBytesThatWereKept) {
   store_->keep_bundle(of, 1, bytes);
   EXPECT_FALSE(store_->bundle(of, 1)) << "of a stage that is not known";
   store_->open_stage(of, 3);
+  store_->keep_bundle(of, 1, "unsound");
   store_->keep_bundle(of, 1, bytes);
-  store_->keep_bundle(of, 1, "made again");
   EXPECT_EQ(store_->bundle(of, 1), bytes);
   EXPECT_FALSE(store_->bundle(of, 0));
   EXPECT_FALSE(store_->bundle(stage(running()), 1)) << "of another job";
@@ -81,6 +81,7 @@ TEST_F(SharedWorkRows, ALaterAttemptBeginsAnewAndFindsWhatWasMade) {
   EXPECT_TRUE(store_->open_stage(now, 2));
   EXPECT_FALSE(store_->open_stage(before, 2)) << "a helper of the attempt before";
   EXPECT_FALSE(store_->claim_bundle(before, true));
+  store_->keep_bundle(before, 0, "late");
   EXPECT_EQ(store_->claim_bundle(now, false), 0);
   EXPECT_EQ(store_->bundle(now, 0), "made");
 }

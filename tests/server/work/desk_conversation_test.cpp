@@ -19,7 +19,7 @@ class SmallDesk final : public WorkDesk {
  public:
   std::optional<Claim> claim(std::string_view /*stage*/, int bundles) override {
     if (next == bundles) return std::nullopt;
-    return Claim{next++};
+    return Claim{next++, before};
   }
   void publish(std::string_view /*stage*/, int bundle, std::string_view bytes) override {
     published[bundle] = bytes;
@@ -32,6 +32,7 @@ class SmallDesk final : public WorkDesk {
   }
 
   int next = 0;
+  std::optional<std::string> before;  // what was made of each bundle
   std::map<int, std::string> published;
   std::int64_t asked_ms = 0;
 };
@@ -68,6 +69,16 @@ TEST(DeskConversation, HandsOverWhatWasClaimedAndPublished) {
   conversation.answer(claim(2));
   const std::string none = conversation.answer(claim(2)).value();
   EXPECT_EQ(ByteUnpacker(none).next<std::int32_t>(), -1);
+}
+
+TEST(DeskConversation, TakesABundleThatWasMadeBeforeButNotSoundly) {
+  SmallDesk desk;
+  desk.before = "unsound";
+  DeskConversation conversation(&desk);
+  const std::string claimed = conversation.answer(claim(2)).value();
+  EXPECT_EQ(claimed.substr(claimed.size() - 7), "unsound");
+  EXPECT_FALSE(conversation.answer(publish(0, "made")));
+  EXPECT_EQ(desk.published[0], "made");
 }
 
 TEST(DeskConversation, RefusesWhatNoSoundProcessAsks) {
