@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <string_view>
 
 #include "core/base/error.hpp"
@@ -11,7 +11,6 @@ namespace unwrapd::api {
 namespace {
 
 constexpr std::array<std::string_view, 5> kMembers = {"vertex", "at", "uv", "weight", "mesh"};
-constexpr double kMaxIndex = std::numeric_limits<Index>::max();
 
 [[noreturn]] void refuse(const std::string& pointer, const std::string& message) {
   throw Error(ErrorCode::invalid_option, message, pointer);
@@ -44,10 +43,9 @@ void check_members(const Source& source) {
 }
 
 Index index_of(const Source& source, const char* name, const Json& value) {
-  const double index = value.is_number() ? value.get<double>() : -1;
-  if (!(index >= 0 && index <= kMaxIndex && std::trunc(index) == index))
-    source.refuse(name, std::string(name) + " must be an integer of at least 0.");
-  return static_cast<Index>(index);
+  const std::optional<Index> index = index_in(value);
+  if (!index) source.refuse(name, std::string(name) + " must be an integer of at least 0.");
+  return *index;
 }
 
 /// Finite, since the parser refuses other numbers.

@@ -50,6 +50,13 @@ Json parse_json(std::string_view text, const JsonLimits& limits) {
                            .max_members = limits.max_members});
 }
 
+std::optional<std::int32_t> index_in(const Json& value) {
+  const double number = value.is_number() ? value.get<double>() : -1;
+  const bool is_index = number >= 0 && number <= std::numeric_limits<std::int32_t>::max() &&
+                        std::trunc(number) == number;
+  return is_index ? std::optional(static_cast<std::int32_t>(number)) : std::nullopt;
+}
+
 double finite(double value) {
   if (std::isfinite(value)) return value;
   const double largest = std::numeric_limits<double>::max();

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,6 +26,10 @@ struct JsonLimits {
 /// invalid_option with its JSON pointer (a duplicate member, a number beyond the range of a
 /// double).
 Json parse_json(std::string_view text, const JsonLimits& limits = {});
+
+/// A number that counts from 0 and fits into 32 bits; 10.0 is one, as in JSON Schema. None: the
+/// value is anything else.
+std::optional<std::int32_t> index_in(const Json& value);
 
 /// Replaces an infinite or undefined value by the largest double of its sign, since JSON cannot
 /// express it.

@@ -1,7 +1,6 @@
 #include "api/locked_islands.hpp"
 
-#include <cmath>
-#include <limits>
+#include <optional>
 
 #include "core/base/error.hpp"
 
@@ -13,10 +12,10 @@ namespace {
 }
 
 Index number_of(const Json& value, const std::string& pointer) {
-  const double number = value.is_number() ? value.get<double>() : -1;
-  if (!(number >= 0 && number <= std::numeric_limits<Index>::max() && std::trunc(number) == number))
+  const std::optional<Index> number = index_in(value);
+  if (!number)
     refuse_island(pointer, "Meshes and faces of locked_islands must be integers of at least 0.");
-  return static_cast<Index>(number);
+  return *number;
 }
 
 IslandAtFace island_of(const Json& object, const std::string& pointer) {

@@ -110,6 +110,19 @@ constexpr OptionRow figure(std::string_view name, Range range, std::span<const M
           .set = set_plain<kField>};
 }
 
+/// For lists of objects, whose number is limited.
+constexpr OptionRow objects(std::string_view name, std::span<const Method> methods,
+                            std::string_view description, decltype(OptionRow::get) get,
+                            decltype(OptionRow::set) set) {
+  return {.name = name,
+          .type = OptionType::objects,
+          .limit = &Limits::max_constraints,
+          .description = description,
+          .methods = methods,
+          .get = get,
+          .set = set};
+}
+
 /// For fields of type flag, names or text.
 template <auto kField>
 constexpr OptionRow plain(std::string_view name, OptionType type, std::span<const Method> methods,

@@ -108,14 +108,10 @@ constexpr std::array kRows = {
         "boundary", kHolding,
         "The shape of every chart's longest boundary. free: chosen by the map, with the least "
         "distortion; circle or square: exactly that shape."),
-    OptionRow{.name = "constraints",
-              .type = OptionType::objects,
-              .limit = &Limits::max_constraints,
-              .description = "Vertices and the texture coordinates that they must have: exactly "
-                             "or, with a weight, in least squares.",
-              .methods = kHolding,
-              .get = get_constraints,
-              .set = set_constraints},
+    objects("constraints", kHolding,
+            "Vertices and the texture coordinates that they must have: exactly or, with a weight, "
+            "in least squares.",
+            get_constraints, set_constraints),
     choice<&O::seams, kSeams>("seams", kEveryMethod,
                               "Which cuts of the input remain cuts. keep: wherever vertices are "
                               "duplicated; none: nowhere; uv0: at the seams of the existing UVs; "
@@ -133,24 +129,13 @@ constexpr std::array kRows = {
     figure<&Welding::distance>("weld_distance", {0, kMaxWeldDistance}, kEveryMethod,
                                "The greatest distance of vertices that weld=auto welds, in the "
                                "mesh's units. Unset: found in the mesh."),
-    OptionRow{
-        .name = "seam_edges",
-        .type = OptionType::objects,
-        .limit = &Limits::max_constraints,
-        .description =
+    objects("seam_edges", kEveryMethod,
             "Paths of vertices along which the mesh is cut, in addition to the cuts of seams.",
-        .methods = kEveryMethod,
-        .get = get_seam_edges,
-        .set = set_seam_edges},
-    OptionRow{.name = "keep_edges",
-              .type = OptionType::objects,
-              .limit = &Limits::max_constraints,
-              .description =
-                  "Paths of vertices along which no seam runs: charts grow across these edges "
-                  "first, at any distortion, and are cut elsewhere.",
-              .methods = kEveryMethod,
-              .get = get_keep_edges,
-              .set = set_keep_edges},
+            get_seam_edges, set_seam_edges),
+    objects("keep_edges", kEveryMethod,
+            "Paths of vertices along which no seam runs: charts grow across these edges first, at "
+            "any distortion, and are cut elsewhere.",
+            get_keep_edges, set_keep_edges),
     plain<&A::seam_avoid>(
         "seam_avoid", OptionType::text, kEveryMethod,
         "A painted attribute of vertices, from 0 to 1, such as COLOR_0.r or _AVOID: where it is "
@@ -228,15 +213,10 @@ constexpr std::array kRows = {
     plain<&O::repack_only>(
         "repack_only", OptionType::flag, kEveryMethod,
         "true: packs the islands of the existing UVs again, without unwrapping; false: unwraps."),
-    OptionRow{.name = "locked_islands",
-              .type = OptionType::objects,
-              .limit = &Limits::max_constraints,
-              .description =
-                  "With repack_only: islands, each named by one of its faces, that keep their UVs. "
-                  "The others are packed around them, at the sizes that they have.",
-              .methods = kEveryMethod,
-              .get = get_locked_islands,
-              .set = set_locked_islands},
+    objects("locked_islands", kEveryMethod,
+            "With repack_only: islands, each named by one of its faces, that keep their UVs. The "
+            "others are packed around them, at the sizes that they have.",
+            get_locked_islands, set_locked_islands),
     plain<&O::measure_only>("measure_only", OptionType::flag, kEveryMethod,
                             "true: measures the existing UVs where they are: charts, seams, "
                             "distortion, flips, overlaps and fill; false: unwraps."),

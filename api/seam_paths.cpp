@@ -1,14 +1,11 @@
 #include "api/seam_paths.hpp"
 
-#include <cmath>
-#include <limits>
+#include <optional>
 
 #include "core/base/error.hpp"
 
 namespace unwrapd::api {
 namespace {
-
-constexpr double kMaxIndex = std::numeric_limits<Index>::max();
 
 [[noreturn]] void refuse(const std::string& pointer, const std::string& message) {
   throw Error(ErrorCode::invalid_option, message, pointer);
@@ -20,11 +17,11 @@ std::string option_of(const std::string& pointer) {
 }
 
 Index index_of(const Json& value, const std::string& pointer) {
-  const double index = value.is_number() ? value.get<double>() : -1;
-  if (!(index >= 0 && index <= kMaxIndex && std::trunc(index) == index))
+  const std::optional<Index> index = index_in(value);
+  if (!index)
     refuse(pointer,
            "Meshes and vertices of " + option_of(pointer) + " must be integers of at least 0.");
-  return static_cast<Index>(index);
+  return *index;
 }
 
 std::vector<Index> vertices_of(const Json& list, const std::string& pointer) {

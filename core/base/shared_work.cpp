@@ -12,7 +12,7 @@ namespace {
 constexpr double kMostBundles = 256;
 
 std::string with_digest(const SharedCache& digests, std::string bytes) {
-  const Digest digest = digests.digest(std::as_bytes(std::span(bytes)));
+  const Digest digest = digest_of(digests, bytes);
   bytes.append(reinterpret_cast<const char*>(digest.data()), digest.size());
   return bytes;
 }
@@ -23,7 +23,7 @@ std::optional<std::string_view> without_digest(const SharedCache& digests, std::
   if (bytes.size() < digest.size()) return std::nullopt;
   const std::string_view own = bytes.substr(0, bytes.size() - digest.size());
   std::memcpy(digest.data(), bytes.data() + own.size(), digest.size());
-  if (digests.digest(std::as_bytes(std::span(own))) != digest) return std::nullopt;
+  if (digest_of(digests, own) != digest) return std::nullopt;
   return own;
 }
 
@@ -42,6 +42,10 @@ bool take(const SharedCache& digests, const BundleSteps& steps, int bundle,
 }
 
 }  // namespace
+
+Digest digest_of(const SharedCache& digests, std::string_view bytes) {
+  return digests.digest(std::as_bytes(std::span(bytes)));
+}
 
 std::optional<SharedStage> bundled(const SharedWork* helpers, std::span<const double> work,
                                    double bundles) {

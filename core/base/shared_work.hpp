@@ -71,6 +71,8 @@ struct BundleSteps {
 std::optional<SharedStage> bundled(const SharedWork* helpers, std::span<const double> work,
                                    double bundles);
 
+Digest digest_of(const SharedCache& digests, std::string_view bytes);
+
 /// Makes all bundles, with the others. In the process that owns the job, steps see them in
 /// ascending order. digests: checks that bundles arrive whole. Throws what steps.make() throws.
 void make_together(SharedWork& work, const SharedCache& digests, const SharedStage& stage,

@@ -26,17 +26,14 @@ std::vector<double> faces_of(std::span<const ChartJob> jobs) {
 /// the job's (try_tighter_bounds).
 Digest key_of(std::span<const ChartJob> jobs, const UnwrapOptions& options,
               const SharedCache& digests) {
-  const auto digest = [&](const std::string& bytes) {
-    return digests.digest(std::as_bytes(std::span(bytes)));
-  };
   BytePacker key;
   key.add_text("map").add(options.max_distortion.value_or(0));
   for (const ChartJob& job : jobs) {
     BytePacker bytes;
     charts::pack(bytes, *job.chart);
-    key.add(digest(bytes.take()));
+    key.add(digest_of(digests, bytes.take()));
   }
-  return digest(key.take());
+  return digest_of(digests, key.take());
 }
 
 /// Nothing where the work is not shared: that of charts under position constraints never is.

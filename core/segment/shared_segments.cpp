@@ -21,9 +21,6 @@ std::vector<double> faces_of(std::span<const ComponentJob> jobs) {
 
 /// Of all that charts_within_bound() reads.
 Digest key_of(std::span<const ComponentJob> jobs, const SharedCache& digests) {
-  const auto digest = [&](const std::string& bytes) {
-    return digests.digest(std::as_bytes(std::span(bytes)));
-  };
   BytePacker key;
   key.add_text("segment");
   for (const auto& [component, rules] : jobs) {
@@ -31,10 +28,10 @@ Digest key_of(std::span<const ComponentJob> jobs, const SharedCache& digests) {
     const auto& [bound, most, page_area, effort, is_quick, on_progress, stop] = segment;
     BytePacker bytes;
     charts::pack(bytes, *component);
-    key.add(digest(bytes.take())).add(symmetry).add(may_stay);
+    key.add(digest_of(digests, bytes.take())).add(symmetry).add(may_stay);
     key.add(bound).add(most).add(page_area).add(effort).add(is_quick);
   }
-  return digest(key.take());
+  return digest_of(digests, key.take());
 }
 
 void pack(BytePacker& bytes, const ComponentCharts& parts) {

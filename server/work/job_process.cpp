@@ -39,15 +39,6 @@ void send_asset(Conversation& worker, const asset::Input& input) {
   for (const auto& [uri, bytes] : input.buffers) worker.send(FrameKind::buffer, uri, bytes);
 }
 
-class NoOutput final : public JobOutput {
- public:
-  void stage(const StageEvent& /*event*/) override {}
-  void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
-  void note(const Note& /*note*/) override {}
-  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
-  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
-};
-
 /// A worker process that has received the whole job by tell(): a spare one, or else a new one. A
 /// process that ends before that, maybe while it waited, does not count against the job.
 template <class Tell>

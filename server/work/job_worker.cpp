@@ -161,16 +161,6 @@ struct Crew {
   ThreadExecutor threads;
 };
 
-/// Of a process that helps with a job.
-class SilentOutput final : public JobOutput {
- public:
-  void stage(const StageEvent& /*event*/) override {}
-  void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
-  void note(const Note& /*note*/) override {}
-  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
-  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
-};
-
 /// The threads of a crew, with what the charts of one job share, and with whom.
 class SharingExecutor final : public Executor {
  public:
@@ -204,8 +194,8 @@ void run(const ReceivedJob& job, Crew& crew, const WorkerFunctions& functions) {
   SocketWork shared(send_all, receive_all, job.task.is_helper);
   SharingExecutor executor(crew.threads, core, job.task.is_shared ? &shared : nullptr);
   SocketOutput told;
-  SilentOutput silent;
-  JobOutput& output = job.task.is_helper ? static_cast<JobOutput&>(silent) : told;
+  NoOutput none;
+  JobOutput& output = job.task.is_helper ? static_cast<JobOutput&>(none) : told;
   const auto elapsed = std::chrono::duration<double, std::milli>(job.task.elapsed_ms);
   const JobTask task{
       .record = job.record,

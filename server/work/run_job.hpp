@@ -36,6 +36,16 @@ class JobOutput {
   virtual void file(std::string_view name, std::string_view bytes) = 0;
 };
 
+/// Of a process that helps with a job, or of which nothing but the last word is wanted.
+class NoOutput final : public JobOutput {
+ public:
+  void stage(const StageEvent& /*event*/) override {}
+  void iteration(const IterationEvent& /*event*/, double /*elapsed_ms*/) override {}
+  void note(const Note& /*note*/) override {}
+  void result(std::string_view /*format*/, std::string_view /*bytes*/) override {}
+  void file(std::string_view /*name*/, std::string_view /*bytes*/) override {}
+};
+
 /// A running job. Of its record only the options, the notes, the input's digest and size, and
 /// `synchronous` are used.
 struct JobTask {

@@ -105,15 +105,20 @@ test("a scene has the same bytes for one, two and four workers", options, async 
   assert.equal(leftOver(farm), 0);
 });
 
-test("a helper that is killed costs time only", options, async (t) => {
+/** A farm of two workers, of which one works on a scene, `id`, and the other helps. */
+async function farmThatShares(t) {
   const farm = new Farm(t);
   const front = await farm.start("front", 0);
   const nodes = [await startWorker(farm, "one"), await startWorker(farm, "two")];
   await sleep(1500);
   const id = await submit(front);
   const helper = await helperAtWork(farm, id, nodes);
+  return { farm, front, id, helper, owner: nodes.find((node) => node !== helper) };
+}
+
+test("a helper that is killed costs time only", options, async (t) => {
+  const { farm, front, id, helper, owner } = await farmThatShares(t);
   await helper.end("SIGKILL");
-  const owner = nodes.find((node) => node !== helper);
   assert.equal(await resultOf(front, id), await expected(t));
   assert.equal(farm.query(`SELECT attempt FROM jobs WHERE id = '${id}'`), "1");
   t.diagnostic(JSON.stringify(await bundles([owner])));
@@ -121,13 +126,8 @@ test("a helper that is killed costs time only", options, async (t) => {
 });
 
 test("where the node of the job is killed, the next attempt finds what was made", options, async (t) => {
-  const farm = new Farm(t);
-  const front = await farm.start("front", 0);
-  const nodes = [await startWorker(farm, "one"), await startWorker(farm, "two")];
-  await sleep(1500);
-  const id = await submit(front);
-  const helper = await helperAtWork(farm, id, nodes);
-  await nodes.find((node) => node !== helper).end("SIGKILL");
+  const { farm, front, id, owner } = await farmThatShares(t);
+  await owner.end("SIGKILL");
   assert.equal(await resultOf(front, id), await expected(t));
   assert.equal(farm.query(`SELECT attempt FROM jobs WHERE id = '${id}'`), "2");
   assert.equal(leftOver(farm), 0);
