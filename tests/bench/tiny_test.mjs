@@ -62,6 +62,14 @@ test('painted', async () => {
   assert.match(table, /^median of after \/ before: in the half [\d.]+, in all [\d.]+$/m);
 });
 
+test('kept', async () => {
+  const path = join(scratch, 'cube.obj');
+  const points = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${i & 1} ${(i >> 1) & 1} ${i >> 2}`);
+  writeFileSync(path, [...points, 'f 1 3 4 2', 'f 5 6 8 7', 'f 1 2 6 5', 'f 3 7 8 4', 'f 1 5 7 3', 'f 2 4 8 6', ''].join('\n'));
+  const table = await script('kept', join(bin, 'unwrap'), '--effort', 'fast', path);
+  assert.equal(table.match(/^cube +\d+ +\d+ +\d+ +\d+\.\d\d$/gm)?.length, 3, table);
+});
+
 test('store', async () => {
   assert.match(await program('store', '10'), /^sqlite +\d+ inserts\/s +\d+ taken and finished\/s +\d+ claimed in turn\/s$/m);
 });
