@@ -11,14 +11,17 @@ const program = process.env.ENDS_OF_CASES;
 const runner = join(dirname(fileURLToPath(import.meta.url)), 'in_batches.mjs');
 
 /** Runs in batches what ctest finds in a folder with these cases of the program, and other tests. */
-function run(cases, others = []) {
+function run(cases, others = [], except = undefined) {
   const folder = mkdtempSync(join(tmpdir(), 'batches-test-'));
   const lines = cases.map((name) => `add_test(Ends.${name} ${program} --gtest_filter=Ends.${name})`);
   lines.push(...others);
   for (const name of cases)
     lines.push(`set_tests_properties(Ends.${name} PROPERTIES ENVIRONMENT "WORD=of the environment")`);
   writeFileSync(join(folder, 'CTestTestfile.cmake'), lines.join('\n'));
-  const { status, stdout } = spawnSync('node', [runner, folder, '2'], { encoding: 'utf8' });
+  const list = join(folder, 'except.txt');
+  if (except) writeFileSync(list, except);
+  const { status, stdout } = spawnSync('node',
+    [runner, folder, '2', ...(except ? ['--except', list] : [])], { encoding: 'utf8' });
   rmSync(folder, { recursive: true });
   const all = stdout.trimEnd().split('\n');
   return { status, stdout, last: all.at(-1),
@@ -57,6 +60,17 @@ test('other tests run by themselves, and a program that is missing fails', () =>
     'add_test(fine "true")', 'add_test(bad "false")', 'add_test(absent "/nowhere/program")']);
   assert.equal(last, '2 passed, 2 failed, 0 skipped');
   assert.deepEqual([...failed].sort(), ['absent', 'bad']);  // in the order of their ends
+});
+
+test('what a list names is left out, by the beginning of a name', () => {
+  const { last, failed } = run(['Well', 'WellToo', 'InFailure', 'Skipped'], [],
+    '# a remark\nEnds\\.(In|Sk)\nWell\n');
+  assert.equal(last, '2 passed, 0 failed, 0 skipped');
+  assert.deepEqual(failed, []);
+});
+
+test('a list that leaves nothing to run is a failure', () => {
+  assert.equal(run(['Well'], [], 'Ends\n').status, 2);
 });
 
 test('no test at all is a failure', () => {
