@@ -52,13 +52,7 @@ Index index_of(const Source& source, const char* name, const Json& value) {
 template <class Vector>
 Vector vector_of(const Source& source, const char* name, const Json& value) {
   Vector vector;
-  bool fits = value.is_array() && value.size() == static_cast<std::size_t>(vector.size());
-  for (Eigen::Index i = 0; fits && i < vector.size(); ++i) {
-    const Json& figure = value[static_cast<std::size_t>(i)];
-    fits = figure.is_number() && std::isfinite(figure.get<double>());
-    if (fits) vector[i] = figure.get<double>();
-  }
-  if (!fits)
+  if (!read_numbers(value, {vector.data(), static_cast<std::size_t>(vector.size())}))
     source.refuse(name, std::string(name) + " must be a list of " + std::to_string(vector.size()) +
                             " finite numbers.");
   return vector;

@@ -57,6 +57,15 @@ std::optional<std::int32_t> index_in(const Json& value) {
   return is_index ? std::optional(static_cast<std::int32_t>(number)) : std::nullopt;
 }
 
+bool read_numbers(const Json& value, std::span<double> numbers) {
+  if (!value.is_array() || value.size() != numbers.size()) return false;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!value[i].is_number() || !std::isfinite(value[i].get<double>())) return false;
+    numbers[i] = value[i].get<double>();
+  }
+  return true;
+}
+
 double finite(double value) {
   if (std::isfinite(value)) return value;
   const double largest = std::numeric_limits<double>::max();

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,6 +31,9 @@ Json parse_json(std::string_view text, const JsonLimits& limits = {});
 /// A number that counts from 0 and fits into 32 bits; 10.0 is one, as in JSON Schema. None: the
 /// value is anything else.
 std::optional<std::int32_t> index_in(const Json& value);
+
+/// Whether the value is a list of as many finite numbers as `numbers` takes, which then has them.
+bool read_numbers(const Json& value, std::span<double> numbers);
 
 /// Replaces an infinite or undefined value by the largest double of its sign, since JSON cannot
 /// express it.

@@ -18,38 +18,50 @@ Index number_of(const Json& value, const std::string& pointer) {
   return *number;
 }
 
-IslandAtFace island_of(const Json& object, const std::string& pointer) {
+LockedIsland island_of(const Json& object, const std::string& pointer) {
   if (!object.is_object() || !object.contains("face"))
     refuse_island(pointer, "An island of locked_islands must be an object with a face.");
-  IslandAtFace island;
+  LockedIsland island;
   for (const auto& [name, value] : object.items()) {
     const std::string at = pointer + "/" + pointer_token(name);
-    if (name == "face")
+    if (name == "face") {
       island.face = number_of(value, at);
-    else if (name == "mesh")
+    } else if (name == "mesh") {
       island.surface = number_of(value, at);
-    else
+    } else if (name == "turn") {
+      if (!read_numbers(Json::array({value}), {&island.turn, 1}))
+        refuse_island(at, "turn must be a number of degrees.");
+    } else if (name == "move") {
+      if (!read_numbers(value, {island.move.data(), 2}))
+        refuse_island(at, "move must be a list of 2 finite numbers, along U and V.");
+    } else {
       refuse_island(at,
-                    "An island of locked_islands has no such member; its members are face and "
-                    "mesh.");
+                    "An island of locked_islands has no such member; its members are face, mesh, "
+                    "turn and move.");
+    }
   }
   return island;
 }
 
 }  // namespace
 
-std::vector<IslandAtFace> locked_islands_from_json(const Json& json, const std::string& pointer) {
+std::vector<LockedIsland> locked_islands_from_json(const Json& json, const std::string& pointer) {
   if (!json.is_array()) refuse_island(pointer, "locked_islands must be a list of objects.");
-  std::vector<IslandAtFace> islands;
+  std::vector<LockedIsland> islands;
   islands.reserve(json.size());
   for (std::size_t k = 0; k < json.size(); ++k)
     islands.push_back(island_of(json[k], pointer + "/" + std::to_string(k)));
   return islands;
 }
 
-Json to_json(const std::vector<IslandAtFace>& islands) {
+Json to_json(const std::vector<LockedIsland>& islands) {
   Json json = Json::array();
-  for (const auto& [surface, face] : islands) json.push_back({{"face", face}, {"mesh", surface}});
+  for (const LockedIsland& island : islands) {
+    Json& object = json.emplace_back(Json{{"face", island.face}, {"mesh", island.surface}});
+    if (island.stays()) continue;
+    object["turn"] = island.turn;
+    object["move"] = {island.move.x(), island.move.y()};
+  }
   return json;
 }
 

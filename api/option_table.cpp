@@ -214,8 +214,9 @@ constexpr std::array kRows = {
         "repack_only", OptionType::flag, kEveryMethod,
         "true: packs the islands of the existing UVs again, without unwrapping; false: unwraps."),
     objects("locked_islands", kEveryMethod,
-            "With repack_only: islands, each named by one of its faces, that keep their UVs. The "
-            "others are packed around them, at the sizes that they have.",
+            "With repack_only: islands, each named by one of its faces, that keep their UVs or are "
+            "turned and moved by hand. The others are packed around them, at the sizes that they "
+            "have.",
             get_locked_islands, set_locked_islands),
     plain<&O::measure_only>("measure_only", OptionType::flag, kEveryMethod,
                             "true: measures the existing UVs where they are: charts, seams, "

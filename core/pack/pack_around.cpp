@@ -52,16 +52,6 @@ UvMap points_of_sides(const charts::Outline& outline) {
   return points;
 }
 
-/// An outline's least and greatest coordinates.
-std::pair<Vec2, Vec2> bounds_of_outline(const charts::Outline& outline) {
-  Vec2 low = Vec2::Constant(1e300), high = -low;
-  for (const auto& [a, b] : outline) {
-    low = low.cwiseMin(a);
-    high = high.cwiseMax(a);
-  }
-  return {low, high};
-}
-
 /// The runs of a row within [begin, end).
 void append_clipped(std::span<const Run> runs, int begin, int end, Rows& rows) {
   for (const Run& run : runs)
@@ -180,6 +170,15 @@ bool keeps_border(const BoundedOutline& own, const PageOptions& page, double pad
 }
 
 }  // namespace
+
+std::pair<Vec2, Vec2> bounds_of_outline(const charts::Outline& outline) {
+  Vec2 low = Vec2::Constant(1e300), high = -low;
+  for (const auto& [a, b] : outline) {
+    low = low.cwiseMin(a);
+    high = high.cwiseMax(a);
+  }
+  return {low, high};
+}
 
 int page_holding(const charts::Outline& island, double aspect, int pages) {
   const auto [low, high] = bounds_of_outline(island);

@@ -1,12 +1,17 @@
 #include "core/pipeline/locked_islands.hpp"
 
+#include <Eigen/Geometry>
 #include <map>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
+#include "core/guarantee/quantize_uvs.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/pack/pack_around.hpp"
+#include "core/pipeline/place_islands.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
@@ -41,7 +46,7 @@ class IslandsOfFaces {
 
 /// The island that a face lies in. number: of its entry of locked_islands.
 std::size_t island_at(std::span<const Surface> surfaces, IslandsOfFaces& islands,
-                      const IslandAtFace& at, std::size_t number) {
+                      const LockedIsland& at, std::size_t number) {
   const auto surface = static_cast<std::size_t>(at.surface);
   if (at.surface < 0 || surface >= surfaces.size())
     refuse_lock(number, "there is no mesh " + std::to_string(at.surface) +
@@ -67,26 +72,69 @@ std::size_t island_at(std::span<const Surface> surfaces, IslandsOfFaces& islands
                           advice);
 }
 
+[[noreturn]] void refuse_two_places(std::size_t number, Index face, std::size_t earlier) {
+  refuse_lock(number, "the island of face " + std::to_string(face) +
+                          " has another turn or move in entry " + std::to_string(earlier) +
+                          "; name each island once");
+}
+
+/// Turned about the middle of its box, then moved; on a page that is not square turning keeps
+/// lengths in texels.
+class Motion {
+ public:
+  Motion(const LockedIsland& wanted, const charts::Outline& outline, const PageSize& page)
+      : turn_(wanted.turn / 180 * std::numbers::pi),
+        move_(wanted.move.x(), wanted.move.y() * page.aspect()) {
+    const auto [low, high] = pack::bounds_of_outline(outline);
+    middle_ = (low + high) / 2;
+  }
+
+  Vec2 operator()(const Vec2& point) const { return turn_ * (point - middle_) + middle_ + move_; }
+
+ private:
+  Eigen::Rotation2Dd turn_;
+  Vec2 move_, middle_;
+};
+
+void lay(const LockedIsland& wanted, const PageSize& page, charts::Outline& outline, UvMap& map) {
+  const Motion motion(wanted, outline, page);
+  for (auto& side : outline)
+    for (Vec2& end : side) end = motion(end);
+  to_page_widths(map, page);
+  for (Vec2& point : map) point = motion(point);
+  to_uvs(map, page);
+  guarantee::round_to_step(map);
+}
+
 }  // namespace
 
-std::vector<std::vector<char>> locked_islands(std::span<const Surface> surfaces,
-                                              const std::vector<charts::UvIslands>& all,
-                                              const UnwrapOptions& options,
-                                              const std::stop_token& stop) {
+std::vector<std::vector<char>> lay_locked_islands(std::span<const Surface> surfaces,
+                                                  const UnwrapOptions& options,
+                                                  const std::stop_token& stop,
+                                                  std::vector<charts::UvIslands>& all) {
   constexpr int kAnyNumber = 1'000'000;
-  const double aspect = options.page_size().aspect();
+  const PageSize page = options.page_size();
+  const int pages = options.packing.max_pages;
   IslandsOfFaces islands(all);
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> named;  // the entry of each island
   std::vector<std::vector<char>> is_locked;
   for (const charts::UvIslands& own : all) is_locked.emplace_back(own.maps.size(), 0);
   for (std::size_t i = 0; i < options.locked_islands.size(); ++i) {
-    const IslandAtFace& at = options.locked_islands[i];
+    const LockedIsland& wanted = options.locked_islands[i];
     check_cancelled_every(i, stop);
-    const std::size_t k = island_at(surfaces, islands, at, i);
-    const auto s = static_cast<std::size_t>(at.surface);
-    const int pages = options.packing.max_pages;
-    const charts::Outline& outline = all[s].outlines[k];
-    if (pack::page_holding(outline, aspect, pages) < 0)
-      refuse_place(i, at.face, pages, pack::page_holding(outline, aspect, kAnyNumber) >= 0);
+    const std::size_t k = island_at(surfaces, islands, wanted, i);
+    const auto s = static_cast<std::size_t>(wanted.surface);
+    const auto [earlier, is_first] = named.try_emplace({s, k}, i);
+    if (!is_first) {
+      if (!options.locked_islands[earlier->second].has_place_of(wanted))
+        refuse_two_places(i, wanted.face, earlier->second);
+      continue;
+    }
+    charts::Outline& outline = all[s].outlines[k];
+    if (!wanted.stays()) lay(wanted, page, outline, all[s].maps[k]);
+    if (pack::page_holding(outline, page.aspect(), pages) < 0)
+      refuse_place(i, wanted.face, pages,
+                   pack::page_holding(outline, page.aspect(), kAnyNumber) >= 0);
     is_locked[s][k] = 1;
   }
   return is_locked;

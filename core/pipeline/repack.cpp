@@ -88,13 +88,38 @@ void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& al
   }
 }
 
-/// Places the islands that are not locked beside those that are, which keep their UVs.
+/// The pairs of all faces on the page, also of different islands.
+Index count_overlaps(const std::vector<charts::UvIslands>& all, const std::stop_token& stop) {
+  std::vector<Triangle> faces;
+  UvMap uv;
+  for (const charts::UvIslands& own : all)
+    for (std::size_t k = 0; k < own.maps.size(); ++k) {
+      const auto first = static_cast<Index>(uv.size());
+      for (const Triangle& face : own.charts.charts[k].mesh.faces)
+        faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+      uv.insert(uv.end(), own.maps[k].begin(), own.maps[k].end());
+    }
+  return static_cast<Index>(
+      measure::overlapping_pairs(faces, uv, measure::kMostPairs, stop).size());
+}
+
+void note_overlaps(Report& report) {
+  if (report.overlaps == 0) return;
+  report.notes.push_back(
+      {NoteCode::overlaps,
+       std::to_string(*report.overlaps) +
+           " pairs of triangles overlap on the page, so that they share texels: locked islands lie "
+           "on each other, or islands overlapped themselves before. Move or unlock islands, or "
+           "unwrap the asset."});
+}
+
+/// Places the islands that are not locked beside those that are, which lie where the option says.
 void place_around(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& all,
                   const UnwrapOptions& options, Executor& executor, Report& report) {
   report.page = options.page_size();
   for (charts::UvIslands& own : all) widen_outlines(own, report.page);
   const std::vector<std::vector<char>> is_locked =
-      locked_islands(surfaces, all, options, executor.stop());
+      lay_locked_islands(surfaces, options, executor.stop(), all);
   std::vector<charts::Outline> locked, free;
   std::vector<UvMap*> maps;
   double covered = 0;
@@ -117,21 +142,8 @@ void place_around(std::span<const Surface> surfaces, std::vector<charts::UvIslan
     to_uvs(*maps[k], report.page);
     guarantee::round_to_step(*maps[k]);
   }
-}
-
-/// The pairs of all faces on the page, also of different islands.
-Index count_overlaps(const std::vector<charts::UvIslands>& all, const std::stop_token& stop) {
-  std::vector<Triangle> faces;
-  UvMap uv;
-  for (const charts::UvIslands& own : all)
-    for (std::size_t k = 0; k < own.maps.size(); ++k) {
-      const auto first = static_cast<Index>(uv.size());
-      for (const Triangle& face : own.charts.charts[k].mesh.faces)
-        faces.push_back({face[0] + first, face[1] + first, face[2] + first});
-      uv.insert(uv.end(), own.maps[k].begin(), own.maps[k].end());
-    }
-  return static_cast<Index>(
-      measure::overlapping_pairs(faces, uv, measure::kMostPairs, stop).size());
+  report.overlaps = count_overlaps(all, executor.stop());
+  note_overlaps(report);
 }
 
 void leave_in_place(const std::vector<charts::UvIslands>& all, const UnwrapOptions& options,

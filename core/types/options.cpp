@@ -13,6 +13,8 @@
 namespace unwrapd {
 namespace {
 
+constexpr double kMostMove = 1000;
+
 void require(bool holds, const std::string& what, const std::string& pointer) {
   if (!holds) throw Error(ErrorCode::invalid_option, what, pointer);
 }
@@ -33,7 +35,7 @@ void require_locked_islands(const UnwrapOptions& options) {
   if (options.locked_islands.empty()) return;
   const Packing& packing = options.packing;
   require(options.repack_only,
-          "locked_islands stay where they are when others are packed again; send repack_only, too",
+          "locked_islands lie where they shall when others are packed again; send repack_only, too",
           "/locked_islands");
   const std::string given = "locked islands determine the size of all; leave out ";
   require(!packing.texels_per_unit, given + "texels_per_unit", "/texels_per_unit");
@@ -41,6 +43,14 @@ void require_locked_islands(const UnwrapOptions& options) {
           "/group");
   require(!packing.stack_identical, "locked islands share no place; leave out stack_identical",
           "/stack_identical");
+  for (std::size_t i = 0; i < options.locked_islands.size(); ++i) {
+    const LockedIsland& island = options.locked_islands[i];
+    const std::string at = "/locked_islands/" + std::to_string(i);
+    require(std::abs(island.turn) <= 360, "turn must lie between -360 and 360 degrees",
+            at + "/turn");
+    require(std::abs(island.move.x()) <= kMostMove && std::abs(island.move.y()) <= kMostMove,
+            "move must lie between -1000 and 1000 pages", at + "/move");
+  }
 }
 
 /// Islands that are kept have their shapes and overlaps already.

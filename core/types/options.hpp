@@ -44,10 +44,18 @@ struct SeamPath {
   std::vector<Index> vertices;  ///< of that surface, two or more; copies at a position are one
 };
 
-/// An island of the input's texture coordinates: the one that a face lies in.
-struct IslandAtFace {
-  Index surface = 0;  ///< which of the asset's surfaces
-  Index face = 0;     ///< of that surface
+/// An island of the input's texture coordinates, the one that a face lies in, and where it shall
+/// lie.
+struct LockedIsland {
+  Index surface = 0;           ///< which of the asset's surfaces
+  Index face = 0;              ///< of that surface
+  double turn = 0;             ///< in degrees, counterclockwise about the middle of its box; first
+  Vec2 move = Vec2(0.0, 0.0);  ///< then, in UVs: 1 is the width or the height of the page
+
+  [[nodiscard]] bool stays() const { return turn == 0 && move == Vec2(0, 0); }
+  [[nodiscard]] bool has_place_of(const LockedIsland& other) const {
+    return turn == other.turn && move == other.move;
+  }
 };
 
 /// How packing may turn an island: as fits best; along the page by its straight sides or its
@@ -120,7 +128,7 @@ struct UnwrapOptions {
   std::vector<PositionConstraint> constraints =
       {};  ///< ASAP, ARAP, Hybrid; the page is then theirs
   Packing packing = {};
-  std::vector<IslandAtFace> locked_islands = {};  ///< stay where they are when UVs are packed anew
+  std::vector<LockedIsland> locked_islands = {};  ///< are not packed when UVs are packed anew
   bool repack_only = false;          ///< the surfaces' own UVs are packed anew, nothing is solved
   bool measure_only = false;         ///< the surfaces' own UVs are measured where they are
   Effort effort = Effort::balanced;  ///< counted work of the searches, never time (ADR 0045)

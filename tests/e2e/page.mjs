@@ -17,7 +17,7 @@ export const missing = noChromium ||
   (!playwright && "tests/node_modules is missing: run npm ci in tests/");
 
 /** WebGL without a GPU: what draws in its place draws the canvases alone, and not the page around them. */
-const args = ["--host-resolver-rules=MAP unwrapd.test 127.0.0.1", "--no-sandbox", "--disable-quic", "--use-gl=angle", "--use-angle=swiftshader", "--disable-gpu-compositing", "--enable-unsafe-swiftshader"];
+const args = ["--host-resolver-rules=MAP unwrapd.test 127.0.0.1", "--no-sandbox", "--disable-quic", "--use-gl=angle", "--use-angle=swiftshader", "--disable-gpu-compositing", "--webgl-antialiasing-mode=none", "--enable-unsafe-swiftshader"];
 
 export const launchChromium = (flags) => playwright.chromium.launch({ executablePath: chromium, args: flags });
 

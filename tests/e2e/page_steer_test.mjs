@@ -73,6 +73,7 @@ describe("steered by hand", { skip: missing }, () => {
 
   /** Where a point of the page lies on the screen, while all of the page is shown. */
   async function placeOf(page, [u, v]) {
+    await page.locator("#flat").scrollIntoViewIfNeeded();
     const { x, y, width, height } = await page.locator("#flat").boundingBox();
     return { x: x + width * (0.5 + (u - 0.5) / 1.06), y: y + height * (0.5 - (v - 0.5) / 1.06) };
   }
@@ -131,6 +132,64 @@ describe("steered by hand", { skip: missing }, () => {
     await page.click("#unlock-all");
     const free = await submitted(page, () => page.click("#pack-again"));
     assert.equal(free.locked_islands, undefined);
+  });
+
+  test("an island is moved and turned by hand, and packing leaves it there", async (t) => {
+    const page = await visitWithSixIslands(t);
+    const before = await resultOf(page);
+    await page.check("#edit-islands");
+    await page.click("#lock-all");
+    const from = await faceAt(page, 64);
+    const drag = async (start, end, key) => {
+      const [{ x, y }, to] = [await placeOf(page, start), await placeOf(page, end)];
+      if (key) await page.keyboard.down(key);
+      await page.mouse.move(x, y);
+      await page.mouse.down();
+      await page.mouse.move((x + to.x) / 2, (y + to.y) / 2, { steps: 3 });
+      await page.mouse.move(to.x, to.y);
+      await page.mouse.up();
+      if (key) await page.keyboard.up(key);
+    };
+    const bare = await shot(page, "#flat");
+    await drag(from, [from[0] < 0.5 ? from[0] + 0.1 : from[0] - 0.1, from[1]]);
+    assert.match(await page.locator("#lock-count").innerText(), /^6 islands of 6 locked. 1 island lies elsewhere/);
+    assert.ok(await difference(page, await shot(page, "#flat"), bare) > 0.01, "the layout shows it there");
+    assert.match(await page.locator("#faults").innerText(), /overlap others/, "it lies on its neighbour");
+    assert.equal(await page.locator("#island-name").innerText(), "Chart 3");
+    const moved = Number(await page.inputValue("#island-u"));
+    assert.ok(Math.abs(Math.abs(moved) - 0.1) < 0.01, `${moved}`);
+    await page.click("#island-back");
+    assert.equal(await page.locator("#lock-count").innerText(), "6 islands of 6 locked.");
+    assert.ok(await difference(page, await shot(page, "#flat"), bare) < 0.01, "it is back");
+    // By numbers, and by Shift: a quarter turn of a square about its middle.
+    await page.fill("#island-turn", "45");
+    await page.press("#island-turn", "Tab");
+    await page.fill("#island-turn", "0");
+    await page.press("#island-turn", "Tab");
+    const corners = [...Array(32).keys()].flatMap((k) => cornersOf(before, 64 + k));
+    const [low, high] = [Math.min, Math.max].map((least) => [0, 1].map((k) => least(...corners.map((c) => c[k]))));
+    const [middle, reach] = [low.map((l, k) => (l + high[k]) / 2), (high[0] - low[0]) * 0.4];
+    await drag([middle[0] + reach, middle[1]], [middle[0], middle[1] + reach], "Shift");
+    const turned = Number(await page.inputValue("#island-turn"));
+    assert.ok(Math.abs(turned - 90) < 2, `${turned}`);
+    await page.fill("#island-turn", "90");
+    await page.press("#island-turn", "Tab");
+    const first = jobOf(page);
+    const options = await submitted(page, () => page.click("#pack-again"));
+    const wanted = options.locked_islands.find(({ turn }) => turn);
+    assert.deepEqual(wanted, { mesh: 0, face: 64, turn: 90, move: [0, 0] });
+    assert.equal(options.locked_islands.length, 6);
+    await page.waitForFunction((id) => location.hash.includes("job=") && !location.hash.includes(id) && !document.querySelector("#send").disabled, first);
+    const result = await resultOf(page);
+    for (let face = 0; face < 192; face += 1)
+      for (const [k, [u, v]] of cornersOf(before, face).entries()) {
+        const isTurned = Math.floor(face / 32) === 2;
+        const place = isTurned ? [middle[0] - (v - middle[1]), middle[1] + (u - middle[0])] : [u, v];
+        const now = cornersOf(result, face)[k];
+        assert.ok(Math.hypot(now[0] - place[0], now[1] - place[1]) < 1e-6, `face ${face}`);
+      }
+    assert.equal(result.report.overlaps, 0);
+    assert.equal(await page.locator("#lock-count").innerText(), "6 islands of 6 locked.");
   });
 
   test("an island is locked by keyboard, and what does not fit is told", async (t) => {

@@ -1,5 +1,6 @@
 // The page: it opens meshes, has them unwrapped by the server that shows it, and shows what came of it.
 // It uses nothing but the API that everybody has.
+import {Arranging} from './app/arranging.js';
 import {Balancing} from './app/balancing.js';
 import {Editing} from './app/editing.js';
 import {connectOpening, showMesh} from './app/opening.js';
@@ -51,14 +52,15 @@ async function start(): Promise<void> {
     }
   };
   connectBalance((lambda, isDraft) => again(`λ ${lambda}`, isDraft));
-  const packing = new Packing(viewing, session, showProblem);
+  const arranging = new Arranging(viewing, session);
+  const packing = new Packing(arranging, session, showProblem);
   packing.chosen = () => form.chosen();
   packing.onOpen = openMesh;
   packing.onPack = (wanted) => {
     options = wanted;
     void session.unwrap(wanted);
   };
-  editing.onIsland = (island) => packing.toggle(island);
+  editing.islands = arranging;
   session.onClose = () => {
     packing.reset();
     editing.reset();

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <functional>
+#include <numbers>
 
 #include "core/base/error.hpp"
 #include "core/unwrap.hpp"
@@ -56,6 +58,14 @@ Around packed_around(Surface surface, const UnwrapOptions& options) {
   SerialExecutor serial;
   Unwrapped result = unwrap(std::span(&surface, 1), options, {}, serial);
   return {std::move(surface), std::move(result)};
+}
+
+bool is_inside_of(const Around& at, std::size_t face, const Vec2& p) {
+  const auto side = [&](std::size_t i) {
+    const Vec2 a = at.corner(face, i), way = at.corner(face, (i + 1) % 3) - a;
+    return way.x() * (p - a).y() - way.y() * (p - a).x();
+  };
+  return side(0) > 0 && side(1) > 0 && side(2) > 0;
 }
 
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
@@ -163,6 +173,71 @@ TEST(LockedIslands, LeaveATightPageAsItIsUnlessThePaddingGrows) {
       if (s / 2 != t / 2) {
         EXPECT_GE(gap(moved, s, t), between - 2e-6) << s << " and " << t;
       }
+}
+
+/// Against a rotation by complex numbers, in texels.
+TEST(LockedIslands, AreTurnedAboutTheirMiddleAndMoved) {
+  std::vector<Sheet> all = kScattered;
+  all[0] = {{.1, .2}, {.3, .1}};
+  UnwrapOptions options = locking({1, 7});
+  options.width = 512, options.height = 256;
+  options.locked_islands[0].turn = 30;
+  options.locked_islands[0].move = Vec2(.25, .375);
+  const Around at = packed_around(sheets(all), options);
+  const std::complex<double> middle(512 * .25, 256 * .25), move(512 * .25, 256 * .375);
+  const std::complex<double> turn = std::polar(1.0, std::numbers::pi / 6);
+  for (std::size_t t = 0; t < 2; ++t)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2 was = at.surface.corner_uv[t][i];
+      const std::complex<double> wanted =
+          turn * (std::complex(512 * was.x(), 256 * was.y()) - middle) + middle + move;
+      EXPECT_NEAR(512 * at.corner(t, i).x(), wanted.real(), 1e-4);
+      EXPECT_NEAR(256 * at.corner(t, i).y(), wanted.imag(), 1e-4);
+      EXPECT_EQ(at.corner(6 + t, i), at.surface.corner_uv[6 + t][i]) << "the other one stays";
+    }
+  for (std::size_t s = 2; s < at.surface.mesh.faces.size(); ++s)
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_FALSE(is_inside_of(at, 0, at.corner(s, i)) || is_inside_of(at, 1, at.corner(s, i)));
+  EXPECT_EQ(at.result.report.overlaps, 0);
+}
+
+TEST(LockedIslands, ThatAreMovedOntoEachOtherAreCounted) {
+  UnwrapOptions options = locking({0, 6});  // squares within each other once one is moved
+  std::vector<Sheet> all = kScattered;
+  all[3] = {{.8, .8}, {.1, .1}};
+  const Around apart = packed_around(sheets(all), options);
+  EXPECT_EQ(apart.result.report.overlaps, 0);
+  options.locked_islands[1].move = all[0].low + Vec2(.1, .02) - all[3].low;
+  const Around at = packed_around(sheets(all), options);
+  EXPECT_GT(at.result.report.overlaps, 0);
+  ASSERT_EQ(at.result.report.notes.size(), 1U);
+  EXPECT_EQ(at.result.report.notes[0].code, NoteCode::overlaps);
+}
+
+TEST(LockedIslands, AreMovedOntoAPageButNotBeyondIt) {
+  std::vector<Sheet> all = kScattered;
+  all[0].low = Vec2(-3, .3);
+  const Surface surface = sheets(all);
+  UnwrapOptions options = locking({0});
+  EXPECT_THROW(packed_around(surface, options), Error);
+  options.locked_islands[0].move = Vec2(3.4, 0);
+  EXPECT_NEAR(packed_around(surface, options).corner(0, 0).x(), .4, 1e-6);
+  options.locked_islands[0].move = Vec2(3.9, 0);
+  EXPECT_THROW(packed_around(surface, options), Error);
+}
+
+TEST(LockedIslands, AreNamedTwiceForOnePlaceAlone) {
+  UnwrapOptions options = locking({0, 1});  // the two triangles of one
+  options.locked_islands[0].move = options.locked_islands[1].move = Vec2(.05, .01);
+  const Around at = packed_around(sheets(kScattered), options);
+  EXPECT_LT((at.corner(0, 0) - kScattered[0].low - Vec2(.05, .01)).norm(), 1e-6) << "moved once";
+  options.locked_islands[1].turn = 5;
+  try {
+    packed_around(sheets(kScattered), options);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where(), "/locked_islands/1");
+  }
 }
 
 TEST(LockedIslands, AreAllOrTheSameForAnyThreads) {

@@ -26,8 +26,12 @@ export class Editing {
   readonly #viewing: Viewing;
   readonly #session: Session;
   readonly #pins = new Pins();
-  /** An island was clicked, or nothing. */
-  onIsland?: (island: number | undefined) => void;
+  /** Takes clicks and drags on islands. */
+  islands?: {
+    toggle(island: number | undefined): void;
+    grab(island: number | undefined, at: [number, number], turns: boolean): boolean;
+    drag(at: [number, number], ends: boolean): void;
+  };
   /** Another solve is wanted, since a pin was moved. */
   onPins?: () => void;
   #marks: Partial<Record<Marked, SeamMarks>> = {};
@@ -125,7 +129,7 @@ export class Editing {
   #click(view: 'solid' | 'flat', event: MouseEvent | undefined): boolean {
     if (this.#marked && view === 'solid') this.#markAt(event);
     else if (this.#mode === 'pins' && view === 'flat') this.#pinAt(event);
-    else if (this.#mode === 'islands') this.onIsland?.(this.#islandAt(view, event));
+    else if (this.#mode === 'islands') this.islands?.toggle(this.#islandAt(view, event));
     else return false;
     return true;
   }
@@ -170,12 +174,14 @@ export class Editing {
 
   #grab(event: PointerEvent): boolean {
     const {viewer} = this.#viewing;
+    if (this.#mode === 'islands') return this.islands?.grab(this.#islandAt('flat', event), viewer.flat.uvAt(event), event.shiftKey) ?? false;
     if (this.#mode !== 'pins') return false;
     this.#dragged = this.#pins.near(viewer.flat.uvAt(event), viewer.flat.lengthOf(REACH), viewer.what?.aspect ?? 1);
     return this.#dragged >= 0;
   }
 
   #drag(uv: [number, number], ends: boolean): void {
+    if (this.#mode === 'islands') return this.islands?.drag(uv, ends);
     this.#pins.move(this.#dragged, uv);
     this.#draw();
     if (ends) this.onPins?.();

@@ -1,7 +1,7 @@
 // The views with their tools: what is shown, in which colours, and what is picked.
 import {$, el, once, show} from '../base/dom.js';
 import {count} from '../base/words.js';
-import {mapped, uvOf} from '../mesh/islands.js';
+import {type Mapped, mapped, uvOf} from '../mesh/islands.js';
 import type {Model} from '../mesh/model.js';
 import {overlappingFaces} from '../mesh/overlaps.js';
 import {type Surface, surfaceOf} from '../mesh/surface.js';
@@ -39,6 +39,8 @@ const sameFaces = (skin: Skin | undefined, {faces}: Surface) => (skin?.uv.length
 
 export class Viewing {
   readonly viewer: Viewer;
+  /** Another chart is picked, or none. */
+  onPicked?: () => void;
   #charts: Chart[] = [];
   #before: Shown | undefined;
   #after: Shown | undefined;
@@ -47,7 +49,10 @@ export class Viewing {
   constructor(onError: (error: unknown) => void) {
     this.#onError = onError;
     this.viewer = new Viewer($<HTMLCanvasElement>('solid'), $<HTMLCanvasElement>('flat'));
-    this.viewer.onPick = (picked) => this.#tellPicked(picked?.island);
+    this.viewer.onPick = (picked) => {
+      this.#tellPicked(picked?.island);
+      this.onPicked?.();
+    };
     $('colouring').addEventListener('change', () => this.#choose().catch(onError));
     $('image').addEventListener('change', () => this.#useImage().catch(onError));
     for (const id of ['show-seams', 'show-wire', 'show-worst', 'show-overlaps']) $(id).addEventListener('change', () => this.#showLines());
@@ -108,6 +113,13 @@ export class Viewing {
     return this.#after;
   }
 
+  /** The islands of the result are put elsewhere, and keep their shapes. */
+  arrange(map: Mapped): void {
+    if (!this.#after) return;
+    this.#after = {...this.#after, map, overlapping: overlappingFaces(map, true)};
+    this.#show(this.#after, true);
+  }
+
   /** The materials of a file; where it cannot be read, that is told. */
   async #skinOf(asset: (() => Promise<Model>) | undefined): Promise<Skin | undefined> {
     try {
@@ -148,7 +160,7 @@ export class Viewing {
     const told = this.isBlank ? `The most distorted one is ${chart}.` : `The frame shows ${chart}, the most distorted one.`;
     const texts = [
       many ? told : '',
-      some > 0 ? `${count(some, 'triangle')} ${some === 1 ? 'overlaps' : 'overlap'} others of the same chart. They are hatched.` : '',
+      some > 0 ? `${count(some, 'triangle')} ${some === 1 ? 'overlaps' : 'overlap'} others. They are hatched.` : '',
     ];
     $('faults').textContent = texts.filter(Boolean).join(' ');
   }

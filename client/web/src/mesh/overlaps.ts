@@ -1,4 +1,4 @@
-// Where a map covers the page more than once: triangles of one island whose interiors meet. Exact for the
+// Where a map covers the page more than once: triangles whose interiors meet. Exact for the
 // coordinates that the server writes, which are multiples of 2^-24.
 import type {Mapped} from './islands.js';
 
@@ -77,8 +77,8 @@ class Cells {
   }
 }
 
-/** The faces that overlap another face of their island; undefined where looking for them takes too long. */
-export function overlappingFaces({uv, island}: Mapped): Uint32Array | undefined {
+/** The faces that overlap another face of their island, or of any; undefined where looking for them takes too long. */
+export function overlappingFaces({uv, island}: Mapped, ofAny = false): Uint32Array | undefined {
   const {starts, faces} = new Cells(uv);
   const found = new Set<number>();
   const isFlat = (f: number) => turn(uv, 3 * f, 3 * f + 1, 3 * f + 2) === 0;
@@ -89,7 +89,7 @@ export function overlappingFaces({uv, island}: Mapped): Uint32Array | undefined 
     for (let i = starts[cell]!; i < starts[cell + 1]!; i += 1)
       for (let j = i + 1; j < starts[cell + 1]!; j += 1) {
         const [f, g] = [faces[i]!, faces[j]!];
-        if (island[f] !== island[g] || (found.has(f) && found.has(g)) || isFlat(f) || isFlat(g) || parts(uv, f, g) || parts(uv, g, f)) continue;
+        if ((!ofAny && island[f] !== island[g]) || (found.has(f) && found.has(g)) || isFlat(f) || isFlat(g) || parts(uv, f, g) || parts(uv, g, f)) continue;
         found.add(f).add(g);
       }
   }

@@ -51,9 +51,9 @@ export class Viewer {
     return this.#selected;
   }
 
-  /** Islands that stay where they are. */
-  showLocked(islands: ReadonlySet<number>): void {
-    const {surface, map, aspect = 1} = this.#what ?? {};
+  /** Islands that are locked; map: where they are dragged to just now. */
+  showLocked(islands: ReadonlySet<number>, map = this.#what?.map): void {
+    const {surface, aspect = 1} = this.#what ?? {};
     const faces = Array.from(map?.island ?? []).flatMap((island, f) => (islands.has(island) ? [f] : []));
     this.solid.setLocked(surface ? trianglesOf(faces, surface.positions, 3) : new Float32Array());
     this.flat.setLocked(map ? flat(trianglesOf(faces, map.uv, 2), aspect, 1) : new Float32Array());
