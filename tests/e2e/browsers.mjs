@@ -9,4 +9,4 @@ export const firefox = process.env.FIREFOX ?? "/usr/bin/firefox-esr";
 
 /** Why tests cannot open a page; false if they can. */
 export const noChromium = !existsSync(chromium) && `there is no Chromium at ${chromium}`;
-export const noFirefox = !existsSync(firefox) && `there is no Firefox at ${firefox}`;
+export const noFirefox = [firefox, "/usr/bin/Xvfb"].filter((file) => !existsSync(file)).map((file) => `there is no ${file}`).join(", ") || false;

@@ -1,4 +1,6 @@
 // The page at / of a real server in a real Chromium, for the tests of its flows. UNWRAPD is the server.
+import { spawn } from "node:child_process";
+import { once } from "node:events";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import { tmpdir } from "node:os";
@@ -21,8 +23,21 @@ const args = ["--host-resolver-rules=MAP unwrapd.test 127.0.0.1", "--no-sandbox"
 
 export const launchChromium = (flags) => playwright.chromium.launch({ executablePath: chromium, args: flags });
 
-/** Debian's Firefox, by the protocol that all browsers speak. */
-export const launchFirefox = () => playwright.firefox.launch({ executablePath: firefox, channel: "moz-firefox" });
+/** A screen that nobody sees: without one Firefox draws no WebGL. Ends with the browser. */
+async function hiddenScreen() {
+  const screen = spawn("Xvfb", ["-displayfd", "3", "-screen", "0", "1280x1024x24"], { stdio: ["ignore", "ignore", "ignore", "pipe"] });
+  const [number] = await once(screen.stdio[3], "data");
+  return { screen, display: `:${String(number).trim()}` };
+}
+
+/** Debian's Firefox, by the protocol that all browsers speak. It draws by Mesa, without a GPU. */
+export async function launchFirefox() {
+  const { screen, display } = await hiddenScreen();
+  const browser = await playwright.firefox.launch({ executablePath: firefox, channel: "moz-firefox",
+    firefoxUserPrefs: { "webgl.force-enabled": true }, env: { ...process.env, DISPLAY: display, LIBGL_ALWAYS_SOFTWARE: "1" } });
+  browser.on("disconnected", () => screen.kill());
+  return browser;
+}
 
 /** The path of a real mesh; undefined where there are none. */
 export function real(name) {
