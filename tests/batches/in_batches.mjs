@@ -5,8 +5,8 @@
 //
 // FILE has a regular expression a line: tests whose names begin with one are left out. (ctest's own
 // expressions may have ten groups.) What fails is told as it fails, with its output. Cases that a crash kept from running run in a
-// process of their own. The last line counts: "N passed, N failed, N skipped". Exits with 1 where a
-// test failed, and with 2 where there was none.
+// process of their own. The slowest tests are told at the end. The last line counts: "N passed, N
+// failed, N skipped". Exits with 1 where a test failed, and with 2 where there was none.
 import { execFileSync, spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -15,6 +15,7 @@ import { join } from 'node:path';
 const kCasesOfABatch = 12;
 const kSecondsOfAProcess = 600;
 const kSkippedExit = 77;
+const kSlowestTold = 12;
 
 const [folder, jobs, ...others] = process.argv.slice(2);
 const [leftOut, ctestArguments] =
@@ -22,6 +23,7 @@ const [leftOut, ctestArguments] =
 const scratch = mkdtempSync(join(tmpdir(), 'batches-'));
 const counts = { passed: 0, failed: 0, skipped: 0 };
 const failed = [];
+const seconds = [];  // [seconds, name] of each
 
 function expressionsIn(file) {
   return readFileSync(file, 'utf8').split('\n').filter((line) => line && !line.startsWith('#'))
@@ -96,32 +98,36 @@ function end(test, outcome, output = '') {
 
 async function runAlone(test) {
   if (test.command.length === 0) return end(test, 'failed', 'its program is not built');
+  const begin = Date.now();
   const { status, output } = await run(test.command, test);
+  seconds.push([(Date.now() - begin) / 1000, test.name]);
   if (status === kSkippedExit || (status === 0 && output.includes('[  SKIPPED ]')))
     end(test, 'skipped');
   else end(test, status === 0 ? 'passed' : 'failed', output);
 }
 
-/** What GoogleTest wrote of each case, by its name; nothing after a crash. */
+/** What GoogleTest wrote of each case, {outcome, time}, by its name; nothing after a crash. */
 function resultsIn(file) {
   try {
     const results = new Map();
     for (const suite of JSON.parse(readFileSync(file, 'utf8')).testsuites)
       for (const one of suite.testsuite)
-        results.set(`${suite.name}.${one.name}`,
-          one.failures ? 'failed' : one.result === 'SKIPPED' ? 'skipped' : 'passed');
+        results.set(`${suite.name}.${one.name}`, {
+          outcome: one.failures ? 'failed' : one.result === 'SKIPPED' ? 'skipped' : 'passed',
+          time: parseFloat(one.time),
+        });
     return results;
   } catch {
     return undefined;
   }
 }
 
-/** The cases whose end the output tells: those before a crash. */
+/** The cases whose end the output tells, as above: those before a crash. */
 function endedIn(output) {
   const ended = new Map();
   const words = { '[       OK ]': 'passed', '[  FAILED  ]': 'failed', '[  SKIPPED ]': 'skipped' };
   for (const [, word, name] of output.matchAll(/^(\[.{10}\]) (\S+) \(\d+ ms\)$/gm))
-    if (words[word]) ended.set(name, words[word]);
+    if (words[word]) ended.set(name, { outcome: words[word], time: 0 });
   return ended;
 }
 
@@ -134,7 +140,7 @@ async function runBatch(batch, number) {
   const { status, output } = await run(command, batch[0]);
   const results = resultsIn(file);
   const known = results ?? endedIn(output);
-  const blamed = [...known.values()].includes('failed');
+  const blamed = [...known.values()].some(({ outcome }) => outcome === 'failed');
   if (status !== 0 && !blamed) process.stdout.write(`${output}\n`);  // a crash, or a leak at the end
   const isLeak = results && status !== 0 && !blamed;
   let told = output;  // once
@@ -144,8 +150,9 @@ async function runBatch(batch, number) {
       await runAlone(test);
       continue;
     }
-    end(test, result, told);
-    if (result === 'failed') told = '';
+    seconds.push([result.time, test.name]);
+    end(test, result.outcome, told);
+    if (result.outcome === 'failed') told = '';
   }
   if (isLeak && !batch.some((test) => failed.includes(test.name)))
     end(batch[0], 'failed', `the process of these cases ended with ${status}: ${filter}`);
@@ -163,6 +170,8 @@ const worker = async () => {
 await Promise.all(Array.from({ length: Number(jobs) }, worker));
 rmSync(scratch, { recursive: true });
 console.log(`${batches.length} processes for ${tests.length} tests`);
+for (const [time, name] of seconds.sort(([a], [b]) => b - a).slice(0, kSlowestTold))
+  console.log(`${time.toFixed(1)} s: ${name}`);
 for (const name of failed) console.log(`FAILED: ${name}`);
 console.log(`${counts.passed} passed, ${counts.failed} failed, ${counts.skipped} skipped`);
 process.exitCode = counts.failed > 0 ? 1 : tests.length === 0 ? 2 : 0;
