@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "api/options.hpp"
+#include "client/failure.hpp"
 #include "client/files.hpp"
+#include "core/base/error.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -41,6 +43,17 @@ std::string range_text(const api::OptionRow& row) {
   return can_unset(row) ? text + "|none" : text;
 }
 
+/// The text of a list of objects. Throws Failure{file} where it is no JSON.
+std::string read_list(const std::string& path) {
+  std::string text = read_file(path);
+  try {
+    api::parse_json(text, {.max_bytes = text.size()});
+  } catch (const Error& error) {
+    throw Failure(ExitCode::file, path + ": " + error.what());
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string flag_name(std::string_view option) {
@@ -65,7 +78,7 @@ void add_option_flags(CLI::App& app, OptionTexts& options) {
     app.add_option_function<std::string>(
            flag_name(row.name),
            [&options, name, is_file](const std::string& value) {
-             options[name] = is_file ? read_file(value) : value;
+             options[name] = is_file ? read_list(value) : value;
            },
            text)
         ->type_name(range_text(row))

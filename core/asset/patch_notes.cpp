@@ -107,7 +107,8 @@ std::vector<Note> side_effects_of_patch(const Gltf& gltf,
       NoteCode::set_chosen,
       "The new texture coordinates are " + gltf.texcoord +
           ", and the existing sets stay, so that textures of the asset keep fitting. Send "
-          "texcoord=0 to overwrite the first set.");
+          "textures=transfer to have them painted for the new ones, or texcoord=0 to overwrite the "
+          "first set.");
   add(!gltf.transfer &&
           sampled_sets(gltf).test(static_cast<std::size_t>(gltf.texcoord.back() - '0')),
       NoteCode::textures_lost,

@@ -64,17 +64,24 @@ std::size_t island_at(std::span<const Surface> surfaces, IslandsOfFaces& islands
   return static_cast<std::size_t>(island);
 }
 
-[[noreturn]] void refuse_place(std::size_t number, Index face, int pages, bool is_on_one) {
-  const std::string advice = is_on_one ? "raise max_pages, or do not lock it, so that it is packed"
-                                       : "move it onto one page, or do not lock it";
-  refuse_lock(number, "the island of face " + std::to_string(face) +
-                          " does not lie on one of the " + std::to_string(pages) + " pages; " +
-                          advice);
+/// "the island of face 7", and of which mesh where there are several.
+std::string named(const LockedIsland& wanted, std::size_t meshes) {
+  const std::string mesh = meshes > 1 ? " of mesh " + std::to_string(wanted.surface) : "";
+  return "the island of face " + std::to_string(wanted.face) + mesh;
 }
 
-[[noreturn]] void refuse_two_places(std::size_t number, Index face, std::size_t earlier) {
-  refuse_lock(number, "the island of face " + std::to_string(face) +
-                          " has another turn or move in entry " + std::to_string(earlier) +
+[[noreturn]] void refuse_place(std::size_t number, const std::string& island, int pages,
+                               bool is_on_one) {
+  const std::string advice = is_on_one ? "raise max_pages, or do not lock it, so that it is packed"
+                                       : "move it onto one page, or do not lock it";
+  const std::string where =
+      pages == 1 ? "the page" : "one of the " + std::to_string(pages) + " pages";
+  refuse_lock(number, island + " does not lie on " + where + "; " + advice);
+}
+
+[[noreturn]] void refuse_two_places(std::size_t number, const std::string& island,
+                                    std::size_t earlier) {
+  refuse_lock(number, island + " has another turn or move in entry " + std::to_string(earlier) +
                           "; name each island once");
 }
 
@@ -116,7 +123,7 @@ std::vector<std::vector<char>> lay_locked_islands(std::span<const Surface> surfa
   const PageSize page = options.page_size();
   const int pages = options.packing.max_pages;
   IslandsOfFaces islands(all);
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> named;  // the entry of each island
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> entries;  // by surface and island
   std::vector<std::vector<char>> is_locked;
   for (const charts::UvIslands& own : all) is_locked.emplace_back(own.maps.size(), 0);
   for (std::size_t i = 0; i < options.locked_islands.size(); ++i) {
@@ -124,16 +131,16 @@ std::vector<std::vector<char>> lay_locked_islands(std::span<const Surface> surfa
     check_cancelled_every(i, stop);
     const std::size_t k = island_at(surfaces, islands, wanted, i);
     const auto s = static_cast<std::size_t>(wanted.surface);
-    const auto [earlier, is_first] = named.try_emplace({s, k}, i);
+    const auto [earlier, is_first] = entries.try_emplace({s, k}, i);
     if (!is_first) {
       if (!options.locked_islands[earlier->second].has_place_of(wanted))
-        refuse_two_places(i, wanted.face, earlier->second);
+        refuse_two_places(i, named(wanted, surfaces.size()), earlier->second);
       continue;
     }
     charts::Outline& outline = all[s].outlines[k];
     if (!wanted.stays()) lay(wanted, page, outline, all[s].maps[k]);
     if (pack::page_holding(outline, page.aspect(), pages) < 0)
-      refuse_place(i, wanted.face, pages,
+      refuse_place(i, named(wanted, surfaces.size()), pages,
                    pack::page_holding(outline, page.aspect(), kAnyNumber) >= 0);
     is_locked[s][k] = 1;
   }

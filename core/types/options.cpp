@@ -35,7 +35,7 @@ void require_locked_islands(const UnwrapOptions& options) {
   if (options.locked_islands.empty()) return;
   const Packing& packing = options.packing;
   require(options.repack_only,
-          "locked_islands lie where they shall when others are packed again; send repack_only, too",
+          "locked_islands are islands of existing texture coordinates; send repack_only, too",
           "/locked_islands");
   const std::string given = "locked islands determine the size of all; leave out ";
   require(!packing.texels_per_unit, given + "texels_per_unit", "/texels_per_unit");

@@ -30,13 +30,28 @@ async function hiddenScreen() {
   return { screen, display: `:${String(number).trim()}` };
 }
 
-/** Debian's Firefox, by the protocol that all browsers speak. It draws by Mesa, without a GPU. */
-export async function launchFirefox() {
+/** Whether pages of a browser can draw the views. */
+export const draws = (page) => page.evaluate(() => Boolean(document.createElement("canvas").getContext("webgl2")));
+
+async function canDraw(browser) {
+  const page = await browser.newPage();
+  const can = await draws(page);
+  await page.close();
+  return can;
+}
+
+/**
+ * Debian's Firefox, by the protocol that all browsers speak. It draws by Mesa, without a GPU. On a busy machine its
+ * look for a driver may run out of time, after which it draws nothing: then it is started again.
+ */
+export async function launchFirefox(tries = 3) {
   const { screen, display } = await hiddenScreen();
   const browser = await playwright.firefox.launch({ executablePath: firefox, channel: "moz-firefox",
     firefoxUserPrefs: { "webgl.force-enabled": true }, env: { ...process.env, DISPLAY: display, LIBGL_ALWAYS_SOFTWARE: "1" } });
   browser.on("disconnected", () => screen.kill());
-  return browser;
+  if (tries === 1 || await canDraw(browser)) return browser;
+  await browser.close();
+  return launchFirefox(tries - 1);
 }
 
 /** The path of a real mesh; undefined where there are none. */

@@ -25,7 +25,7 @@ describe("by hand", { skip: missing }, () => {
     await page.check("#edit-seams");
     const bare = await shot(page, "#solid");
     await clickAt(page, "#solid", 0.4, 0.5);
-    await page.locator("#seam-count", { hasText: "No edges marked. The next click goes on from the last." }).waitFor();
+    await page.locator("#seam-count", { hasText: "No edges marked. A path begins here. Click where it shall lead." }).waitFor();
     await clickAt(page, "#solid", 0.6, 0.5);
     await page.locator("#seam-count", { hasText: /[1-9]\d* edges? marked in 1 path/ }).waitFor();
     await page.mouse.move(5, 5);

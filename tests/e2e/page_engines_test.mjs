@@ -4,11 +4,11 @@ import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 
 import { noFirefox } from "./browsers.mjs";
-import { Bench, cap, difference, figure, jobOf, launchChromium, launchFirefox, missing, openMesh, shot, unwrap } from "./page.mjs";
+import { Bench, cap, difference, draws, figure, jobOf, launchChromium, launchFirefox, missing, openMesh, shot, unwrap } from "./page.mjs";
 
 const engines = {
   "Chromium without WebGL": [missing, () => launchChromium(["--no-sandbox", "--disable-quic", "--disable-gpu", "--disable-3d-apis"])],
-  "Firefox": [missing || noFirefox, launchFirefox],
+  "Firefox": [missing || noFirefox, () => launchFirefox()],
 };
 
 for (const [name, [skip, launch]] of Object.entries(engines))
@@ -17,7 +17,6 @@ for (const [name, [skip, launch]] of Object.entries(engines))
     before(() => bench.open(launch));
     after(() => bench.close());
 
-    const draws = (page) => page.evaluate(() => Boolean(document.createElement("canvas").getContext("webgl2")));
     /** The pictures of both views follow what they are to show. */
     async function showsColours(page) {
       for (const view of ["#solid", "#flat"]) {

@@ -207,7 +207,7 @@ describe("a job of the page", { skip: missing }, () => {
     await page.locator("#lambda-row").waitFor();
     await page.locator("#result").waitFor();
     assert.equal(await page.locator("#opened").isVisible(), false, "the mesh of before is not open any more");
-    assert.equal(await page.locator("#edit").isVisible(), false, "nor can it be edited");
+    assert.equal(await page.locator("#edit-seams").isDisabled(), true, "nor can its seams be edited");
     assert.equal(await page.locator("#versions").isVisible(), false);
     await page.click("#send");
     await page.locator("#problem", { hasText: "There is no mesh yet" }).waitFor();

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 
-import { Bench, box, difference, jobOf, missing, shot, submitted, unwrap } from "./page.mjs";
+import { Bench, box, difference, jobOf, missing, openMesh, real, shot, submitted, unwrap } from "./page.mjs";
 
 const bench = new Bench();
 
@@ -110,10 +110,11 @@ describe("steered by hand", { skip: missing }, () => {
     for (const face of [0, 64]) {
       const { x, y } = await placeOf(page, await faceAt(page, face));
       await page.mouse.click(x, y);
+      await page.check("#island-locked");
     }
     assert.equal(await page.locator("#lock-count").innerText(), "2 islands of 6 locked.");
     await page.mouse.move(5, 5);
-    assert.ok(await difference(page, await shot(page, "#flat"), bare) > 0.02, "locks are seen");
+    assert.ok(await difference(page, await shot(page, "#flat"), bare) > 0.01, "locks are seen");
     if (process.env.SHOTS) await page.screenshot({ path: `${process.env.SHOTS}/locked.png` });
     await page.fill("#option-padding", "1");
     const first = jobOf(page);
@@ -152,7 +153,7 @@ describe("steered by hand", { skip: missing }, () => {
     };
     const bare = await shot(page, "#flat");
     await drag(from, [from[0] < 0.5 ? from[0] + 0.1 : from[0] - 0.1, from[1]]);
-    assert.match(await page.locator("#lock-count").innerText(), /^6 islands of 6 locked. 1 island lies elsewhere/);
+    assert.match(await page.locator("#lock-count").innerText(), /^6 islands of 6 locked. 1 island moved/);
     assert.ok(await difference(page, await shot(page, "#flat"), bare) > 0.01, "the layout shows it there");
     assert.match(await page.locator("#faults").innerText(), /overlap others/, "it lies on its neighbour");
     assert.equal(await page.locator("#island-name").innerText(), "Chart 3");
@@ -205,8 +206,64 @@ describe("steered by hand", { skip: missing }, () => {
     assert.match(await page.locator("#announcement").textContent(), /^Chart 1 is unlocked/);
     await page.check("#edit-islands");
     assert.equal(await page.locator("#lock-count").innerText(), "5 islands of 6 locked.");
+    const before = await resultOf(page);
     await page.fill("#option-padding", "120");
     await page.click("#pack-again");
     await page.locator("#problem", { hasText: /do not fit beside the locked ones/ }).waitFor();
+    assert.equal(await page.locator("#lock-count").innerText(), "5 islands of 6 locked.", "what was arranged stays");
+    assert.deepEqual(await resultOf(page), before, "the address is that of the result");
+    await page.fill("#option-padding", "1");
+    await page.click("#pack-again");
+    await page.locator("#status", { hasText: "Packed again" }).waitFor();
+    await page.click("#send");
+    await page.locator("#status", { hasText: "Done" }).waitFor();
+    assert.match(await page.locator("#lock-count").innerText(), /^0 islands of 6 locked.$/, "the mesh that was opened is unwrapped, without locks");
+  });
+
+  test("an island that is moved off the page is told before it is sent, and what lies on others is hatched after it", async (t) => {
+    const page = await visitWithSixIslands(t);
+    await page.check("#edit-islands");
+    const { x, y } = await placeOf(page, await faceAt(page, 64));
+    await page.mouse.click(x, y);
+    await page.fill("#island-u", "-0.9");
+    await page.press("#island-u", "Tab");
+    assert.match(await page.locator("#lock-count").innerText(), /Chart 3 lies beyond the page/);
+    await page.click("#pack-again");
+    await page.locator("#problem", { hasText: /Move Chart 3 onto the page/ }).waitFor();
+    await page.fill("#island-turn", "400");
+    await page.press("#island-turn", "Tab");
+    assert.equal(await page.inputValue("#island-turn"), "360");
+    await page.click("#island-back");
+    await page.click("#lock-all");
+    const [own, other] = [await faceAt(page, 64), await faceAt(page, 0)];
+    await page.fill("#island-u", String(((other[0] - own[0]) / 2).toFixed(3)));
+    await page.press("#island-u", "Tab");
+    await page.fill("#island-v", String(((other[1] - own[1]) / 2).toFixed(3)));
+    await page.press("#island-v", "Tab");
+    assert.match(await page.locator("#faults").innerText(), /overlap others/);
+    await page.click("#pack-again");
+    await page.locator("#status", { hasText: "Packed again" }).waitFor();
+    assert.match(await page.locator("#faults").innerText(), /overlap others/);
+    assert.ok((await resultOf(page)).report.notes.some(({ code }) => code === "overlaps"));
+  });
+
+  test("images are painted for the islands where they were packed, in the set that the textures use", { skip: !real("gltf/sharpgltf/tests/Assets/tree.glb") && "there are no real meshes" }, async (t) => {
+    const page = await bench.visit(t);
+    await openMesh(page, real("gltf/sharpgltf/tests/Assets/tree.glb"));
+    await page.click("text=More options");
+    await page.selectOption("#option-textures", "transfer");
+    await unwrap(page);
+    await page.check("#edit-islands");
+    await page.click("#lock-all");
+    const options = await submitted(page, () => page.click("#pack-again"));
+    assert.equal(options.textures, "transfer");
+    await page.locator("#status", { hasText: "Packed again" }).waitFor();
+    assert.equal((await resultOf(page)).report.texcoord, options.texcoord);
+    await page.reload();
+    await page.locator("#result").waitFor();
+    assert.ok(await page.locator("#edit-closed").isVisible());
+    assert.ok(await page.locator("#edit-seams").isDisabled());
+    await page.check("#edit-islands");
+    assert.match(await page.locator("#lock-count").innerText(), /^0 islands of \d+ locked/, "islands are arranged without the mesh, too");
   });
 });

@@ -66,7 +66,7 @@ test(`${JOBS} jobs outlive the loss of the primary`, options, async (t) => {
     return { id, events: watch(other, id) };
   };
   const endless = await begin(10000, 160);
-  const ending = await begin(500, 60);
+  const ending = await begin(2000, 60);
   assert.equal((await withKey()).status, 200);
 
   const ids = new Array(JOBS);

@@ -40,12 +40,13 @@ async function start(): Promise<void> {
   form.onMethod = showBalance;
   showBalance(form.method);
   let options: Record<string, unknown> | undefined;
+  let packed: string | undefined; // the file that options are for, where it is not the one that is open
   const balancing = new Balancing(session);
   const editing = new Editing(viewing, session);
   const again = (label: string, isDraft: boolean) => {
     try {
       const wanted = {...form.chosen(), ...editing.keepingCharts(), ...editing.options(true)};
-      if (!isDraft) options = wanted;
+      if (!isDraft) [options, packed] = [wanted, undefined];
       balancing.ask(wanted, label, isDraft);
     } catch (error) {
       showProblem(error);
@@ -55,21 +56,18 @@ async function start(): Promise<void> {
   const arranging = new Arranging(viewing, session);
   const packing = new Packing(arranging, session, showProblem);
   packing.chosen = () => form.chosen();
-  packing.onOpen = openMesh;
-  packing.onPack = (wanted) => {
-    options = wanted;
-    void session.unwrap(wanted);
-  };
+  packing.onPack = (wanted, file) => ([options, packed] = [wanted, file]);
+  arranging.pages = () => form.pages;
   editing.islands = arranging;
   session.onClose = () => {
-    packing.reset();
+    arranging.reset();
     editing.reset();
     balancing.reset();
   };
   editing.onPins = () => again('Pins', false);
   const run = () => {
     try {
-      options = {...form.chosen(), ...editing.options()};
+      [options, packed] = [{...form.chosen(), ...editing.options()}, undefined];
       void session.unwrap(options);
     } catch (error) {
       showProblem(error);
@@ -83,7 +81,7 @@ async function start(): Promise<void> {
     editing.ready();
     packing.ready();
     $('curl-row').hidden = !session.opened || !options;
-    if (session.opened && options) $<HTMLTextAreaElement>('curl').value = commandOf(session, options, limits);
+    if (session.opened && options) $<HTMLTextAreaElement>('curl').value = commandOf(session, options, packed, limits);
   };
   connectSharing(() => session.job, showProblem);
   $('jobs').addEventListener('toggle', () => $<HTMLDetailsElement>('jobs').open && listJobs().catch(showProblem));
@@ -95,12 +93,15 @@ async function start(): Promise<void> {
   follow();
 }
 
-function commandOf({opened, kept}: Session, options: object, {max_sync_faces: most}: Limits): string {
-  const isArchive = opened!.mediaType === 'application/zip';
-  const base = withoutExtension(opened!.name);
+/** packed: the result that is packed again. */
+function commandOf({opened, kept}: Session, options: object, packed: string | undefined, {max_sync_faces: most}: Limits): string {
+  const isArchive = opened!.mediaType === 'application/zip' && !packed;
+  const file = packed ?? opened!.name;
+  const base = withoutExtension(file);
   return curlOf({
-    server: connection().server!, options, file: isArchive ? `${base}.zip` : opened!.name, mediaType: opened!.mediaType,
-    result: `${base}.uv.${formatOf(opened!.name, kept!.report.options.output) ?? 'glb'}`, isSmall: kept!.report.input.faces <= most,
+    server: connection().server!, options, file: isArchive ? `${base}.zip` : file,
+    mediaType: packed ? (packed.endsWith('.obj') ? 'model/obj' : 'model/gltf-binary') : opened!.mediaType,
+    result: `${base}.uv.${formatOf(file, kept!.report.options.output) ?? 'glb'}`, isSmall: kept!.report.input.faces <= most,
     needsKey: $<HTMLInputElement>('key').value !== '',
   });
 }

@@ -26,9 +26,8 @@ export class Editing {
   readonly #viewing: Viewing;
   readonly #session: Session;
   readonly #pins = new Pins();
-  /** Takes clicks and drags on islands. */
+  /** Takes drags of islands. */
   islands?: {
-    toggle(island: number | undefined): void;
     grab(island: number | undefined, at: [number, number], turns: boolean): boolean;
     drag(at: [number, number], ends: boolean): void;
   };
@@ -86,7 +85,10 @@ export class Editing {
   /** A result is shown, which can be edited. */
   ready(): void {
     const surface = this.#viewing.viewer.what?.surface;
-    show($('edit'), Boolean(this.#session.sent && this.#session.loaded));
+    const isOpen = Boolean(this.#session.sent);
+    show($('edit'), Boolean(this.#session.loaded));
+    show($('edit-closed'), !isOpen);
+    for (const mode of ['seams', 'keep', 'pins']) $<HTMLInputElement>(`edit-${mode}`).disabled = !isOpen;
     if (surface !== this.#surface) this.#marks = {};
     this.#surface = surface;
     this.#draw();
@@ -129,14 +131,13 @@ export class Editing {
   #click(view: 'solid' | 'flat', event: MouseEvent | undefined): boolean {
     if (this.#marked && view === 'solid') this.#markAt(event);
     else if (this.#mode === 'pins' && view === 'flat') this.#pinAt(event);
-    else if (this.#mode === 'islands') this.islands?.toggle(this.#islandAt(view, event));
     else return false;
     return true;
   }
 
-  #islandAt(view: 'solid' | 'flat', event: MouseEvent | undefined): number | undefined {
+  #islandAt(event: PointerEvent): number | undefined {
     const {viewer} = this.#viewing;
-    const face = view === 'solid' ? viewer.solid.hit(event)?.face ?? -1 : viewer.flat.hit(event);
+    const face = viewer.flat.hit(event);
     return face < 0 ? undefined : viewer.what?.map?.island[face];
   }
 
@@ -174,7 +175,7 @@ export class Editing {
 
   #grab(event: PointerEvent): boolean {
     const {viewer} = this.#viewing;
-    if (this.#mode === 'islands') return this.islands?.grab(this.#islandAt('flat', event), viewer.flat.uvAt(event), event.shiftKey) ?? false;
+    if (this.#mode === 'islands') return this.islands?.grab(this.#islandAt(event), viewer.flat.uvAt(event), event.shiftKey) ?? false;
     if (this.#mode !== 'pins') return false;
     this.#dragged = this.#pins.near(viewer.flat.uvAt(event), viewer.flat.lengthOf(REACH), viewer.what?.aspect ?? 1);
     return this.#dragged >= 0;
@@ -195,7 +196,7 @@ export class Editing {
     const pins = this.#mode === 'pins' ? this.#pins.all.flatMap(({uv}) => uv) : [];
     viewer.flat.setDots(flat(pins, viewer.what?.aspect ?? 1, 3));
     const [edges, paths] = [marks?.edges ?? 0, marks?.paths ?? 0];
-    const begun = marks?.isBegun ? ' The next click goes on from the last.' : '';
+    const begun = marks?.isBegun ? ` ${edges > 0 ? 'The next click goes on from the last.' : 'A path begins here. Click where it shall lead.'}` : '';
     const waits = this.#marked === 'keep' && edges > 0 && this.#pins.all.length > 0 ? ' They count once there is no pin: pins keep the present charts.' : '';
     $('seam-count').textContent = (edges > 0 ? `${count(edges, 'edge')} marked in ${count(paths, 'path')}.` : 'No edges marked.') + waits + begun;
     this.#listPins();

@@ -1,23 +1,23 @@
-// Islands that are locked in the layout, and the others packed again around them. What is packed is
-// the file of the result: it is opened in place of the mesh, with the locks as they were.
+// The islands of a result packed again around those that are locked or were moved: a job of the result's
+// file. The mesh that is open stays so.
 import {$} from '../base/dom.js';
 import {withoutExtension} from '../base/words.js';
-import {type Opened, open} from '../files/read.js';
-import type {OptionValues} from '../job/run.js';
+import {type OptionValues, SentMesh} from '../job/run.js';
 import {getBlob} from '../job/server.js';
 import {type Kept, formatOf} from '../result/downloads.js';
 import {ofLambda} from '../result/load.js';
 import type {Arranging} from './arranging.js';
+import {showMessage} from './problem.js';
 import type {Session} from './session.js';
 
 /** Options of the form that are about packing islands that there are. */
 const OF_PACKING = ['preset', 'padding', 'max_pages', 'rotation', 'effort', 'output', 'compression', 'draco_bits'];
 
-/** The result as a file of the page. An OBJ stays one; anything else is a GLB, which has all of it in one file. */
-async function fileOf({job, lambda, name, report}: Kept): Promise<Opened> {
-  const isObj = formatOf(name, report.options.output) === 'obj';
-  const blob = await getBlob(job.links.result + ofLambda(lambda), isObj ? 'model/obj' : 'model/gltf-binary');
-  return open([{name: `${withoutExtension(name)}.${isObj ? 'obj' : 'glb'}`, blob}]);
+/** Everything but an OBJ is sent as a GLB, which has all of it in one file. */
+async function fileOf({job, lambda, name, report}: Kept): Promise<{file: SentMesh; name: string}> {
+  const [ending, type] = formatOf(name, report.options.output) === 'obj' ? ['obj', 'model/obj'] : ['glb', 'model/gltf-binary'];
+  const own = `${withoutExtension(name)}.uv.${ending}`;
+  return {file: new SentMesh(await getBlob(job.links.result + ofLambda(lambda), type), type, own), name: own};
 }
 
 export class Packing {
@@ -25,42 +25,42 @@ export class Packing {
   readonly #session: Session;
   /** What is chosen in the form. */
   chosen: () => OptionValues = () => ({});
-  /** Opens the file of a result. */
-  onOpen?: (opened: Opened) => void;
-  /** The options of a packing that begins. */
-  onPack?: (options: OptionValues) => void;
-  #staying: number[] | undefined; // while a packing runs
+  /** The options of a packing that begins, and the name of its file. */
+  onPack?: (options: OptionValues, file: string) => void;
+  #staying: number[] = []; // while a packing runs
 
   constructor(arranging: Arranging, session: Session, onError: (error: unknown) => void) {
     [this.#arranging, this.#session] = [arranging, session];
     $('pack-again').addEventListener('click', () => this.#pack().catch(onError));
   }
 
-  reset(): void {
-    this.#staying = undefined;
-    this.#arranging.reset();
+  /** Another result is shown: that of a packing has its islands where they are to stay. */
+  ready(): void {
+    this.#arranging.reset(this.#staying);
+    this.#staying = [];
   }
 
-  /** Another result is shown: that of a packing has its islands where they are locked. */
-  ready(): void {
-    if (this.#staying) $<HTMLInputElement>('edit-islands').click();
-    this.#arranging.reset(this.#staying);
-    this.#staying = undefined;
+  /** The set and the images that the result has are written anew. */
+  #optionsFor({report, what}: Kept): OptionValues {
+    const chosen = Object.entries(this.chosen()).filter(([name]) => OF_PACKING.includes(name));
+    const locked = this.#arranging.locks.asOption(what.surface);
+    const {width, height} = report.page;
+    const isTransferred = report.options.textures === 'transfer';
+    return {
+      ...Object.fromEntries(chosen), width, height, repack_only: true, texcoord: report.texcoord,
+      ...(isTransferred ? {textures: 'transfer'} : {}), ...(locked.length > 0 ? {locked_islands: locked} : {}),
+    };
   }
 
   async #pack(): Promise<void> {
     const {kept} = this.#session;
     if (!kept || !this.#arranging.map) return;
-    const {locks} = this.#arranging;
-    const locked = locks.asOption(kept.what.surface);
-    const {width, height} = kept.report.page;
-    const chosen = Object.entries(this.chosen()).filter(([name]) => OF_PACKING.includes(name));
-    const set = kept.report.texcoord > 0 ? {texcoord: kept.report.texcoord} : {};
-    const options = {...Object.fromEntries(chosen), ...set, width, height, repack_only: true, ...(locked.length > 0 ? {locked_islands: locked} : {})};
-    const opened = await fileOf(kept);
-    const {faces} = locks;
-    this.onOpen?.(opened);
-    this.#staying = faces;
-    this.onPack?.(options);
+    const {beyond, locks} = this.#arranging;
+    if (beyond.length > 0) return showMessage('An island lies beyond the page', `Move ${beyond.join(', ')} onto the page, or put it back.`);
+    const options = this.#optionsFor(kept);
+    const {file, name} = await fileOf(kept);
+    this.#staying = locks.faces;
+    await this.#session.repack(file, options, () => this.onPack?.(options, name));
+    this.#staying = [];
   }
 }

@@ -10,7 +10,7 @@ import {listCharts} from '../result/charts.js';
 import {type Kept, listDownloads} from '../result/downloads.js';
 import {showFigures} from '../result/figures.js';
 import {LambdaGallery} from '../result/lambdas.js';
-import {type Loaded, loadAsset, loadResult} from '../result/load.js';
+import {type Loaded, loadAsset, loadResult, withSourcesOf} from '../result/load.js';
 import {showPictures} from '../result/pictures.js';
 import {clearProblem, showMessage, showProblem} from './problem.js';
 import type {Viewing} from './viewing.js';
@@ -93,6 +93,30 @@ export class Session {
     });
   }
 
+  /** Packs the islands of the result that is shown again; file: of that result. Where that fails, all stays as it is. */
+  async repack(file: SentMesh, options: OptionValues, onPacked: () => void): Promise<void> {
+    const {kept, loaded} = this;
+    if (!kept || !loaded) return;
+    await this.#guarded(async (signal) => {
+      this.#progress.begin('Sending the result…');
+      present($('job'));
+      try {
+        const job = await file.submit(options, {onSent: (share) => this.#progress.sent(share), signal});
+        const end = await this.#end(job, kept.name, signal);
+        const packed = end && await loadResult(end, undefined, this.opened?.model, signal);
+        signal.throwIfAborted();
+        if (!packed) return;
+        onPacked();
+        show($('lambda-row'), false);
+        this.#gallery.hide();
+        this.take(end, {...packed, model: withSourcesOf(packed.model, loaded.model)}, undefined, kept.name);
+        this.#progress.end('Packed again.');
+      } finally {
+        if (this.kept === kept && !signal.aborted) this.#settle(kept.job, kept.name);
+      }
+    });
+  }
+
   /** Shows a job by its address, whatever its state. It may be of another mesh than the one that is open. */
   async openJob(id: string, name: string): Promise<void> {
     this.#close();
@@ -105,14 +129,25 @@ export class Session {
     });
   }
 
-  async #follow(job: Job, name: string, signal: AbortSignal): Promise<void> {
+  /** The job that the page is about. */
+  #settle(job: Job, name: string): void {
     this.job = job;
     history.replaceState(null, '', hashOf({job: job.id, name}));
+  }
+
+  /** A job that has succeeded; undefined where it was cancelled, which is told. */
+  async #end(job: Job, name: string, signal: AbortSignal): Promise<Job | undefined> {
+    this.#settle(job, name);
     const end = await ended(job, {signal, onProgress: (progress) => this.#progress.on(progress)});
-    if (end.state === 'cancelled') return this.#tellCancelled();
+    if (end.state === 'cancelled') return void this.#tellCancelled();
     if (end.problem) throw new UnwrapdError(end.problem);
     this.#progress.tell('Fetching the result…', 1);
-    this.job = end;
+    return (this.job = end);
+  }
+
+  async #follow(job: Job, name: string, signal: AbortSignal): Promise<void> {
+    const end = await this.#end(job, name, signal);
+    if (!end) return;
     const lambdas = [end.options.lambda].flat().filter((lambda) => lambda !== null);
     $('lambda-shown').replaceChildren(...(lambdas.length > 1 ? lambdas : []).map((lambda) => new Option(String(lambda), String(lambda))));
     show($('lambda-row'), lambdas.length > 1);
@@ -138,7 +173,7 @@ export class Session {
     }
     const {width, height} = report.page;
     const what = this.#viewing.result(model, {
-      aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0,
+      aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0, ofAny: Boolean(report.options.repack_only),
       asset: kind !== 'draft' && /\.(glb|gltf)$/i.test(name) ? () => loadAsset(job, lambda) : undefined,
     });
     if (kind !== 'draft') {

@@ -11,6 +11,7 @@ import {type Skin, skinOf} from '../view/skin.js';
 import {imageTexture} from '../view/textures.js';
 import {Viewer} from '../view/viewer.js';
 
+const UNSEEN = 0.01; // distortion that nobody sees: no chart is the worst one
 const SEARCHED_FACES = 300_000; // beyond them overlaps of a mesh as it came in are not searched for
 
 const colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -30,6 +31,8 @@ export interface Result {
   pages: number;
   /** Whether triangles overlap, or nobody has looked. */
   mayOverlap: boolean;
+  /** Whether those of different islands may. */
+  ofAny: boolean;
   /** The file that came out, with its materials; absent if it has none, or those that came in. */
   asset?: (() => Promise<Model>) | undefined;
 }
@@ -101,13 +104,13 @@ export class Viewing {
   }
 
   /** What a job made of it; the view stays if it is the same mesh. */
-  result(model: Model, {aspect, pages, mayOverlap, asset}: Result): Shown {
+  result(model: Model, {aspect, pages, mayOverlap, ofAny, asset}: Result): Shown {
     const last = this.#after ?? this.#before;
     const surface = isSame(last?.surface, model) ? last!.surface : surfaceOf(model);
     this.#after = shown(surface, mapped(surface, uvOf(model, 0)!, surface === last?.surface ? last.map : undefined), aspect, pages);
     const before = this.#before?.skin;
     if (asset ?? before) this.#after.skin = once(async () => sameFaces(await this.#skinOf(asset), surface) ?? sameFaces(await before?.(), surface));
-    if (mayOverlap) this.#after.overlapping = overlappingFaces(this.#after.map!);
+    if (mayOverlap) this.#after.overlapping = overlappingFaces(this.#after.map!, ofAny);
     $<HTMLInputElement>('after').checked = true;
     this.#show(this.#after, surface === last?.surface);
     return this.#after;
@@ -145,7 +148,8 @@ export class Viewing {
     show($('versions'), Boolean(this.#after && this.#before?.map));
     show($('no-layout'), !what.map);
     this.#charts = chartsOf(what);
-    what.worst = this.#charts.length > 1 ? this.#charts[0]!.island : undefined;
+    const [worst, other] = this.#charts;
+    what.worst = other && worst!.angle + worst!.area - 4 > UNSEEN ? worst!.island : undefined;
     this.viewer.show(what, keepsView);
     this.#tellFaults(what);
     this.#legend();

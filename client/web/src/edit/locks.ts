@@ -1,5 +1,5 @@
-// Islands that are not packed when the layout is packed again: they stay, or lie where they were put by
-// hand. Each is known by its first face, which it keeps when it is read again from the file of the result.
+// Islands that are not packed when the layout is packed again: they are locked where they are, or were
+// moved by hand. Each is known by its first face, which it keeps in all results.
 import type {Mapped} from '../mesh/islands.js';
 import type {Surface} from '../mesh/surface.js';
 import {AT_REST, type Motion, isAtRest, place} from './motion.js';
@@ -11,75 +11,73 @@ export interface LockedIsland extends Partial<Motion> {
 }
 
 export class Locks {
-  #motions = new Map<number, Motion>(); // by face
+  #locked = new Set<number>(); // by face
+  #motions = new Map<number, Motion>(); // by face; none is at rest
 
-  /** An island that is unlocked is where it was. */
-  toggle(island: number, {island: of}: Mapped): boolean {
+  toggle(island: number, {island: of}: Mapped): void {
     const face = of.indexOf(island);
-    if (this.#motions.delete(face)) return false;
-    this.#motions.set(face, AT_REST);
-    return true;
+    if (!this.#locked.delete(face)) this.#locked.add(face);
+  }
+
+  isLocked(island: number, {island: of}: Mapped): boolean {
+    return this.#locked.has(of.indexOf(island));
   }
 
   lockAll({island, islandCount}: Mapped): void {
-    for (let k = 0; k < islandCount; k += 1) {
-      const face = island.indexOf(k);
-      if (!this.#motions.has(face)) this.#motions.set(face, AT_REST);
-    }
+    for (let k = 0; k < islandCount; k += 1) this.#locked.add(island.indexOf(k));
   }
 
-  clear(): void {
-    this.#motions.clear();
+  unlockAll(): void {
+    this.#locked.clear();
   }
 
   motionOf(island: number, {island: of}: Mapped): Motion {
     return this.#motions.get(of.indexOf(island)) ?? AT_REST;
   }
 
-  /** Locks an island somewhere. */
-  put(island: number, {island: of}: Mapped, motion: Motion): void {
-    this.#motions.set(of.indexOf(island), motion);
+  move(island: number, {island: of}: Mapped, motion: Motion): void {
+    if (isAtRest(motion)) this.#motions.delete(of.indexOf(island));
+    else this.#motions.set(of.indexOf(island), motion);
   }
 
-  get count(): number {
-    return this.#motions.size;
+  get lockedCount(): number {
+    return this.#locked.size;
   }
 
   get movedCount(): number {
-    return [...this.#motions.values()].filter((motion) => !isAtRest(motion)).length;
+    return this.#motions.size;
   }
 
-  /** The faces, to be locked again in the same islands elsewhere. */
+  /** Those that are not packed. */
   get faces(): number[] {
-    return [...this.#motions.keys()];
+    return [...new Set([...this.#locked, ...this.#motions.keys()])].sort((a, b) => a - b);
   }
 
-  set faces(faces: number[]) {
-    this.#motions = new Map(faces.map((face) => [face, AT_REST]));
+  /** Locks the islands of these faces where they are, and no others. */
+  reset(faces: number[]): void {
+    this.#locked = new Set(faces);
+    this.#motions.clear();
   }
 
   islands({island}: Mapped): Set<number> {
     return new Set(this.faces.map((face) => island[face]!));
   }
 
-  /** The map with the islands where they were put; itself where none was moved. */
+  movedIslands({island}: Mapped): number[] {
+    return [...this.#motions.keys()].map((face) => island[face]!);
+  }
+
+  /** The map with the islands where they were moved; itself where none was. */
   arranged(map: Mapped, aspect: number): Mapped {
     if (this.movedCount === 0) return map;
     const uv = map.uv.slice();
-    const facesOf = new Map<number, number[]>();
-    for (const [face, motion] of this.#motions) if (!isAtRest(motion)) facesOf.set(map.island[face]!, []);
+    const facesOf = new Map<number, number[]>(this.movedIslands(map).map((island) => [island, []]));
     map.island.forEach((island, f) => facesOf.get(island)?.push(f));
-    for (const [face, motion] of this.#motions) {
-      const faces = facesOf.get(map.island[face]!);
-      if (faces) place(faces, motion, aspect, map.uv, uv);
-    }
+    for (const [face, motion] of this.#motions) place(facesOf.get(map.island[face]!)!, motion, aspect, map.uv, uv);
     return {...map, uv};
   }
 
   asOption({part, faceInPart}: Surface): LockedIsland[] {
-    return this.faces.sort((a, b) => a - b).map((face) => {
-      const motion = this.#motions.get(face)!;
-      return {mesh: part[face]!, face: faceInPart[face]!, ...(isAtRest(motion) ? {} : motion)};
-    });
+    return this.faces.map((face) => ({mesh: part[face]!, face: faceInPart[face]!, ...this.#motions.get(face)}));
   }
 }

@@ -7,19 +7,36 @@ export interface Motion {
 }
 
 export const AT_REST: Motion = {turn: 0, move: [0, 0]};
+const SLACK = 1e-6;
 const STEP = 2 ** -24; // the server writes multiples of it
 
 export const isAtRest = ({turn, move: [u, v]}: Motion) => turn === 0 && u === 0 && v === 0;
 
-/** The middle of the box around faces. */
-export function middleOf(faces: readonly number[], uv: Float32Array): [number, number] {
-  const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
+interface Box {
+  low: [number, number];
+  high: [number, number];
+}
+
+export function boxOf(faces: readonly number[], uv: Float32Array): Box {
+  const {low, high}: Box = {low: [Infinity, Infinity], high: [-Infinity, -Infinity]};
   for (const f of faces)
     for (let at = 6 * f; at < 6 * f + 6; at += 1) {
       low[at % 2] = Math.min(low[at % 2]!, uv[at]!);
       high[at % 2] = Math.max(high[at % 2]!, uv[at]!);
     }
-  return [(low[0]! + high[0]!) / 2, (low[1]! + high[1]!) / 2];
+  return {low, high};
+}
+
+/** The middle of the box around faces. */
+export function middleOf(faces: readonly number[], uv: Float32Array): [number, number] {
+  const {low, high} = boxOf(faces, uv);
+  return [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
+}
+
+/** Whether a box lies on one of the pages; the server rounds as little as this, too. */
+export function isOnPage({low, high}: Box, pages: number): boolean {
+  const page = Math.floor((low[0] + high[0]) / 2);
+  return page >= 0 && page < pages && low[0] >= page - SLACK && high[0] <= page + 1 + SLACK && low[1] >= -SLACK && high[1] <= 1 + SLACK;
 }
 
 /** Moves faces of `to` from where they are in `from`. aspect: of the page, whose shape turning keeps. */

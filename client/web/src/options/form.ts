@@ -67,6 +67,11 @@ export class OptionsForm {
     return this.#inputs.get('method')!.value;
   }
 
+  /** How many pages there may be. */
+  get pages(): number {
+    return Number(this.#inputs.get('max_pages')?.value) || 1;
+  }
+
   #has(name: string): boolean {
     return this.#methods.methods.find((method) => method.name === this.method)!.options.includes(name);
   }

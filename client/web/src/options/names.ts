@@ -5,7 +5,7 @@ const NAMES: Record<string, string> = {
   method: 'Method', lambda: 'Balance of angles and areas', lambda_units: 'Scale of the balance',
   'stop.iterations': 'Exact number of iterations', 'stop.tolerance': 'Converged below', 'stop.max_iterations': 'Most iterations',
   initial: 'Start from', pins: 'How position is fixed', guarantee: 'Guarantee', repair: 'How flips are repaired',
-  boundary: 'Shape of the boundary', seams: 'Cuts of the file', weld: 'Close gaps of rounding', weld_distance: 'Widest gap to close',
+  boundary: 'Shape of the boundary', symmetry: 'Symmetric seams', seams: 'Cuts of the file', weld: 'Close gaps of rounding', weld_distance: 'Widest gap to close',
   seam_avoid: 'Painted: no seams here', texel_density: 'Painted: more texels here',
   max_distortion: 'Most distortion', max_charts: 'Most charts', effort: 'Effort', resolution: 'Texture size', width: 'Texture width',
   height: 'Texture height', padding: 'Gap between islands', texels_per_unit: 'Fixed texel density', max_pages: 'Most pages (UDIM)',
@@ -25,10 +25,15 @@ export const VALUES: Record<string, Record<string, string>> = {
   rotation: {any: 'As they fit best', 90: 'By quarter turns', none: 'Not at all'},
   textures: {keep: 'Keep as they are', transfer: 'Resample for the new UVs'},
   output: {auto: 'As the input', glb: 'GLB', gltf: 'glTF', obj: 'OBJ'},
-  compression: {keep: 'As the input', none: 'None', draco: 'Draco', meshopt: 'meshopt'},
   straighten: {off: 'No', auto: 'Where it distorts little'},
   group: {scene: 'The scene: one for all', material: 'Material', mesh: 'Mesh'},
   weld: {auto: 'Automatic', exact: 'No'},
+  symmetry: {off: 'No', auto: 'Where the mesh is symmetric'},
+  initial: {auto: 'Automatic', mean_value: 'Mean values', tutte: 'Tutte’s map', lscm: 'A conformal map'},
+  lambda_units: {dimensionless: 'The same for every size', paper: 'In units of the mesh, as in the paper'},
+  pins: {diameter: 'Two far vertices', spectral: 'None: the spectral map'},
+  repair: {untangle: 'Turn flipped triangles back', virtual_boundary: 'By a virtual boundary, as in the paper'},
+  compression: {keep: 'As the input', none: 'None', draco: 'Draco', meshopt: 'meshopt'},
 };
 
 /** The options that stand before the others. */

@@ -36,6 +36,18 @@ export async function loadResult(job: Job, lambda: number | undefined, open: Mod
   return {report, model: {parts}};
 }
 
+/** A result of another result's file, whose vertices are those of the mesh that came in first. Faces keep their order. */
+export function withSourcesOf(model: Model, first: Model): Model {
+  const sourced = model.parts.map((part, p) => {
+    const from = first.parts[p];
+    if (!from?.sources || from.faces.length !== part.faces.length) return part;
+    const sources = new Uint32Array(part.positions.length / 3);
+    part.faces.forEach((vertex, corner) => (sources[vertex] = from.sources![from.faces[corner]!]!));
+    return {...part, sources};
+  });
+  return {...model, parts: sourced};
+}
+
 /** The file of a result, with its materials. */
 export async function loadAsset(job: Job, lambda: number | undefined): Promise<Model> {
   const blob = await getBlob(job.links.result + ofLambda(lambda), 'model/gltf-binary');

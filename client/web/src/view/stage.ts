@@ -48,7 +48,7 @@ export abstract class Stage {
   readonly #worst = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #edits = new LineSegments(new BufferGeometry(), new LineBasicMaterial({depthTest: false}));
   readonly #picked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.55, depthTest: false}));
-  readonly #locked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.45, depthWrite: false}));
+  readonly #locked = new Mesh(new BufferGeometry(), new MeshBasicMaterial({side: DoubleSide, transparent: true, opacity: 0.25, depthWrite: false}));
   readonly #dots = new Points(new BufferGeometry(), new PointsMaterial({size: 7, sizeAttenuation: false, depthTest: false}));
   readonly #wire: Mesh<BufferGeometry, MeshBasicMaterial>;
   readonly #mesh: Mesh<BufferGeometry, Material | Material[]>;
