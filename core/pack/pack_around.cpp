@@ -33,8 +33,8 @@ constexpr double kMostIslands = 12;
 
 [[noreturn]] void refuse_locked() {
   throw Error(ErrorCode::does_not_fit,
-              "The other islands do not fit beside the locked ones; unlock some, raise max_pages, "
-              "or lower padding.",
+              "The other islands do not fit beside the locked ones; lock them, too, so that they "
+              "stay, unlock some, raise max_pages, or lower padding.",
               "/locked_islands");
 }
 
