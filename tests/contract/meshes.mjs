@@ -80,9 +80,13 @@ function container(json, bin) {
   return Buffer.concat([head, body]);
 }
 
-export function glb(n = 4) {
-  const mesh = grid(n);
+/** mesh: {positions: Float32Array, indices: Uint32Array}. */
+export function glbOf(mesh) {
   return container(document(mesh, {}), binary(mesh));
+}
+
+export function glb(n = 4) {
+  return glbOf(grid(n));
 }
 
 /** A .gltf and the buffer that it names uri. */

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 
+import { glbOf } from "../contract/meshes.mjs";
 import { Bench, box, difference, jobOf, missing, openMesh, real, shot, submitted, unwrap } from "./page.mjs";
 
 const bench = new Bench();
@@ -245,6 +246,30 @@ describe("steered by hand", { skip: missing }, () => {
     await page.locator("#status", { hasText: "Packed again" }).waitFor();
     assert.match(await page.locator("#faults").innerText(), /overlap others/);
     assert.ok((await resultOf(page)).report.notes.some(({ code }) => code === "overlaps"));
+  });
+
+  test("charts that were packed are kept by vertices of the mesh that is open", async (t) => {
+    const page = await bench.visit(t);
+    const lines = box(4).split("\n").map((line) => line.split(" "));
+    const numbers = (kind) => lines.filter(([first]) => first === kind).map(([, ...rest]) => rest.map(Number));
+    const mesh = { positions: Float32Array.from(numbers("v").flat()),
+      indices: Uint32Array.from(numbers("f").flatMap(([a, b, c, d]) => [a, b, c, a, c, d]).map((v) => v - 1)) };
+    await unwrap(page, bench.file("box.glb", glbOf(mesh)));
+    const [{ vertex_map: map }] = (await resultOf(page)).meshes;
+    assert.ok(map.length > mesh.positions.length / 3, "seams duplicate vertices");
+    await page.check("#edit-islands");
+    await page.click("#pack-again");
+    await page.locator("#status", { hasText: "Packed again" }).waitFor();
+    await page.check("#edit-seams");
+    await page.fill("#crease-angle", "80");
+    await page.click("#seam-creases");
+    const { seam_edges: edges } = await submitted(page, () => page.click("#send"));
+    const sides = new Set(numbers("f").flatMap(([a, b, c, d]) => [[a, b], [b, c], [c, d], [d, a], [a, c]])
+      .map((ends) => ends.map((v) => v - 1).sort((x, y) => x - y).join()));
+    for (const { vertices } of edges)
+      for (const [k, v] of vertices.slice(1).entries()) assert.ok(sides.has([vertices[k], v].sort((x, y) => x - y).join()), `${vertices[k]} to ${v}`);
+    await page.locator("#status", { hasText: "Done" }).waitFor();
+    assert.equal(await page.locator("#figures dd").first().evaluate((dd) => dd.firstChild.textContent), "6");
   });
 
   test("images are painted for the islands where they were packed, in the set that the textures use", { skip: !real("gltf/sharpgltf/tests/Assets/tree.glb") && "there are no real meshes" }, async (t) => {
