@@ -52,6 +52,12 @@ describe("the page is for everybody", { skip: missing || (!existsSync(axe) && "a
             await page.keyboard.press("Enter");
             await page.locator("#pin-list li").waitFor();
           },
+          islands: async () => {
+            await page.check("#edit-islands");
+            await page.focus("#flat");
+            await page.keyboard.press("Enter");
+            await page.locator("#island-place").waitFor();
+          },
         };
         for (const [state, reach] of Object.entries(states)) {
           await reach();
