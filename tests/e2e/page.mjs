@@ -26,7 +26,7 @@ export const launchChromium = (flags) => playwright.chromium.launch({ executable
 /** A screen that nobody sees: without one Firefox draws no WebGL. Ends with the browser. */
 async function hiddenScreen() {
   const screen = spawn("Xvfb", ["-displayfd", "3", "-screen", "0", "1280x1024x24"], { stdio: ["ignore", "ignore", "ignore", "pipe"] });
-  const [number] = await once(screen.stdio[3], "data");
+  const [number] = await Promise.race([once(screen.stdio[3], "data"), once(screen, "exit").then(() => [""])]);
   return { screen, display: `:${String(number).trim()}` };
 }
 
