@@ -29,8 +29,8 @@ LockedIsland island_of(const Json& object, const std::string& pointer) {
     } else if (name == "mesh") {
       island.surface = number_of(value, at);
     } else if (name == "turn") {
-      if (!read_numbers(Json::array({value}), {&island.turn, 1}))
-        refuse_island(at, "turn must be a number of degrees.");
+      if (!value.is_number()) refuse_island(at, "turn must be a number of degrees.");
+      island.turn = value.get<double>();
     } else if (name == "move") {
       if (!read_numbers(value, {island.move.data(), 2}))
         refuse_island(at, "move must be a list of 2 finite numbers, along U and V.");

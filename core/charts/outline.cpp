@@ -20,6 +20,15 @@ Outline outline_of(const Chart& chart, std::span<const Vec2> uv) {
   return outline;
 }
 
+std::pair<Vec2, Vec2> bounds_of(const Outline& outline) {
+  Vec2 low = Vec2::Constant(1e300), high = -low;
+  for (const auto& [a, b] : outline) {
+    low = low.cwiseMin(a);
+    high = high.cwiseMax(a);
+  }
+  return {low, high};
+}
+
 double area_of(const Outline& outline) {
   double twice = 0;
   for (const auto& [a, b] : outline) twice += a.x() * b.y() - a.y() * b.x();

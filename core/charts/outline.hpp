@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/charts/charts.hpp"
@@ -14,6 +15,9 @@ using Outline = std::vector<std::array<Vec2, 2>>;
 
 /// The chart's boundary loops, and the sides of flipped triangles, which may reach beyond them.
 Outline outline_of(const Chart& chart, std::span<const Vec2> uv);
+
+/// Its least and its greatest coordinates.
+std::pair<Vec2, Vec2> bounds_of(const Outline& outline);
 
 /// Of all loops, by the shoelace formula: above 0 for those that run counterclockwise.
 double area_of(const Outline& outline);

@@ -72,7 +72,7 @@ class LockedCells {
   /// Cells beyond the margin are nobody's.
   [[nodiscard]] TakenCells of(charts::Outline outline, int page) const {
     const Vec2 origin(page + grid_.border, grid_.border);
-    const Vec2 low = (bounds_of_outline(outline).first - origin) / cell_;
+    const Vec2 low = (charts::bounds_of(outline).first - origin) / cell_;
     TakenCells taken{{}, cell_below(low.x()), cell_below(low.y()), page};
     for (auto& side : outline)
       for (Vec2& end : side) end = (end - origin) / cell_ - Vec2(taken.x, taken.y);
@@ -137,7 +137,7 @@ bool is_inside(const Vec2& p, const charts::Outline& outline) {
 
 struct BoundedOutline {
   explicit BoundedOutline(const charts::Outline& outline) : sides(&outline) {
-    std::tie(low, high) = bounds_of_outline(outline);
+    std::tie(low, high) = charts::bounds_of(outline);
   }
 
   const charts::Outline* sides;
@@ -171,17 +171,8 @@ bool keeps_border(const BoundedOutline& own, const PageOptions& page, double pad
 
 }  // namespace
 
-std::pair<Vec2, Vec2> bounds_of_outline(const charts::Outline& outline) {
-  Vec2 low = Vec2::Constant(1e300), high = -low;
-  for (const auto& [a, b] : outline) {
-    low = low.cwiseMin(a);
-    high = high.cwiseMax(a);
-  }
-  return {low, high};
-}
-
 int page_holding(const charts::Outline& island, double aspect, int pages) {
-  const auto [low, high] = bounds_of_outline(island);
+  const auto [low, high] = charts::bounds_of(island);
   const double page = std::floor((low.x() + high.x()) / 2);
   const bool is_within = page >= 0 && page < pages && low.x() >= page - kRoundingOfUvs &&
                          high.x() <= page + 1 + kRoundingOfUvs && low.y() >= -kRoundingOfUvs &&

@@ -3,16 +3,12 @@
 
 #include <span>
 #include <string>
-#include <utility>
 
 #include "core/base/executor.hpp"
 #include "core/charts/outline.hpp"
 #include "core/pack/pack.hpp"
 
 namespace unwrapd::pack {
-
-/// An outline's least and greatest coordinates.
-std::pair<Vec2, Vec2> bounds_of_outline(const charts::Outline& outline);
 
 /// The page on which an island lies with all of its outline, in page units; -1: on none of so many.
 int page_holding(const charts::Outline& island, double aspect, int pages);

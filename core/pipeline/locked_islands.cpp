@@ -92,7 +92,7 @@ class Motion {
   Motion(const LockedIsland& wanted, const charts::Outline& outline, const PageSize& page)
       : turn_(wanted.turn / 180 * std::numbers::pi),
         move_(wanted.move.x(), wanted.move.y() * page.aspect()) {
-    const auto [low, high] = pack::bounds_of_outline(outline);
+    const auto [low, high] = charts::bounds_of(outline);
     middle_ = (low + high) / 2;
   }
 

@@ -12,8 +12,7 @@ namespace unwrapd::pipeline {
 
 /// Turns and moves islands as options.locked_islands says: in `all` (one a surface; the outlines
 /// are in units of the page's width) the UVs of those that do not stay, and their outlines. Returns
-/// of each surface, one an island, 1: the option names it. Throws Error{invalid_option} with where
-/// =
+/// of each surface, one an island, 1: the option names it. Throws Error{invalid_option} at
 /// "/locked_islands/<i>": a mesh or a face that is not there, or lies in no island, or an island
 /// that would lie on no page, or that is named twice for different places; Error{cancelled}.
 std::vector<std::vector<char>> lay_locked_islands(std::span<const Surface> surfaces,

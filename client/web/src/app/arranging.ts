@@ -98,7 +98,7 @@ export class Arranging {
   get beyond(): string[] {
     const map = this.map;
     if (!map || this.locks.movedCount === 0) return [];
-    const {uv} = this.locks.arranged(map, this.#viewing.viewer.what!.aspect);
+    const {uv} = this.#arranged ?? map;
     const pages = this.pages();
     return this.locks.movedIslands(map).filter((island) => !isOnPage(boxOf(facesOf(island, map), uv), pages)).map((island) => `Chart ${island + 1}`);
   }

@@ -25,9 +25,9 @@ export class Packing {
   readonly #session: Session;
   /** What is chosen in the form. */
   chosen: () => OptionValues = () => ({});
-  /** The options of a packing that begins, and the name of its file. */
+  /** The options of a packing whose result comes now, and the name of its file. */
   onPack?: (options: OptionValues, file: string) => void;
-  #staying: number[] = []; // while a packing runs
+  #staying: number[] = []; // in the result that comes
 
   constructor(arranging: Arranging, session: Session, onError: (error: unknown) => void) {
     [this.#arranging, this.#session] = [arranging, session];
@@ -58,9 +58,12 @@ export class Packing {
     const {beyond, locks} = this.#arranging;
     if (beyond.length > 0) return showMessage('An island lies beyond the page', `Move ${beyond.join(', ')} onto the page, or put it back.`);
     const options = this.#optionsFor(kept);
+    const {faces} = locks;
     const {file, name} = await fileOf(kept);
-    this.#staying = locks.faces;
-    await this.#session.repack(file, options, () => this.onPack?.(options, name));
-    this.#staying = [];
+    if (kept !== this.#session.kept) return;
+    await this.#session.repack(file, options, () => {
+      this.#staying = faces;
+      this.onPack?.(options, name);
+    });
   }
 }

@@ -33,7 +33,7 @@ export function middleOf(faces: readonly number[], uv: Float32Array): [number, n
   return [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
 }
 
-/** Whether a box lies on one of the pages; the server rounds as little as this, too. */
+/** Whether a box lies on one of the pages, but for the rounding of UVs that the server, too, lets pass. */
 export function isOnPage({low, high}: Box, pages: number): boolean {
   const page = Math.floor((low[0] + high[0]) / 2);
   return page >= 0 && page < pages && low[0] >= page - SLACK && high[0] <= page + 1 + SLACK && low[1] >= -SLACK && high[1] <= 1 + SLACK;
