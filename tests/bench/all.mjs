@@ -34,6 +34,25 @@ const ofRequest = (printed) => [
   return seen ? [goal(name, '<=', Number(asked), Number(seen))] : [];
 });
 
+/** "time: median 1.041 (asked: 1.15), worst 2.10 (asked: 3)" of `bench bijective`. */
+const ofBijective = (printed) => [...printed.matchAll(/^(time|rise): median ([\d.]+)(?: %)? \(asked: ([\d.]+)\), worst ([\d.]+)(?: %)? \(asked: ([\d.]+)\)/gm)]
+  .flatMap(([, what, median, askedMedian, worst, askedWorst]) => [
+    goal(`${what} of bijective, median`, '<=', Number(askedMedian), Number(median)),
+    goal(`${what} of bijective, worst`, '<=', Number(askedWorst), Number(worst)),
+  ]);
+
+/** "cancel, farm   median   20.1   99 %   52.3" of `bench farm`. */
+const ofFarm = (printed) => [...printed.matchAll(/^(submit|watch|cancel), farm +median +[\d.]+ +99 % +([\d.]+)/gm)]
+  .map(([, what, late]) => goal(`${what} at other nodes, ms, 99 %`, '<=', 100, Number(late)));
+
+/** The last column of the table of `bench scene`: speed-up, of its bound. */
+const ofScene = (printed) => [...printed.matchAll(/^([24]) +(?:[\d.]+ +){5}([\d.]+)$/gm)]
+  .map(([, workers, share]) => goal(`a scene on ${workers} workers, of its bound`, '>=', .9, Number(share)));
+
+/** "sqlite   ... 1210 claimed in turn/s" of `bench store`. */
+const ofStore = (printed) => [...printed.matchAll(/^(\w+) .* (\d+) claimed in turn\/s$/gm)]
+  .map(([, engine, claims]) => goal(`claims a second for 1,000 owners, ${engine}`, '>=', 300, Number(claims)));
+
 const kept = (name) => JSON.parse(readFileSync(join(out, name), 'utf8'));
 // [name, arguments, minutes, goals of what it printed and wrote]
 const benches = [
@@ -42,9 +61,16 @@ const benches = [
   ['engine', ['engine', '1e5'], 2],
   ['methods', ['methods'], 5],
   ['atlas', ['atlas', '--fast', file('closed/spot_control_mesh.obj'), 'noisy:5000', 'made:torus:1000:1'], 3, ofAtlases],
+  ['bijective', ['bijective', '--pairs=1', file('paper'), 'made:opened:1000:1', 'made:hill:9000:1'], 4, ofBijective],
+  ['painted', ['painted', 'made:torus:1000:1'], 1],
+  ['kept', ['kept', '--effort', 'fast', file('closed/spot_control_mesh.obj')], 1],
   ['cancel-latency', ['cancel-latency', 'noisy:5000', 'disk:100000', 'boxes:100'], 2],
   ['load', ['load', '20'], 4, () => ofFigures(Object.values(kept('load.json').figures).flat())],
   ['isolation', ['isolation', '10'], 1.5, () => ofFigures(kept('isolation.json').figures)],
+  ['store', ['store', '1000'], 1, ofStore],
+  ['cost', ['cost', '1', file('closed/spot_control_mesh.obj')], 1],
+  ['farm', ['farm', '40'], 1.5, ofFarm],
+  ['scene', ['scene', '60', '1'], 2, ofScene],
   ['defaults', ['defaults', file('closed/spot_control_mesh.obj'), file('closed/torus.obj')], 1.5,
    () => ofDefaults(kept('defaults.json'))],
   ['converge', ['converge', file('paper/Isis_dABF.obj')], 1],
