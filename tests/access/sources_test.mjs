@@ -10,10 +10,8 @@ const MESH = grid(8);
 
 /** A server of unwrapd and its directory, gone after the test. */
 async function start(t, ...flags) {
-  let server;
-  t.after(() => server?.end("SIGKILL")); // before its directory goes: hooks run in their order
   const data = dataDirectory(t);
-  server = await Server.start(data, ...flags);
+  const server = await Server.start(data, ...flags);
   return { server, data };
 }
 

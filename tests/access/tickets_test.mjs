@@ -53,7 +53,6 @@ async function site(t, { flags = [], options = [] } = {}) {
   const data = dataDirectory(t);
   const headers = holder(data, "site", ...flags);
   const server = await Server.start(data, "--require-keys", ...options);
-  t.after(() => server.end("SIGTERM"));
   return { at: new Site(server, headers), data };
 }
 
@@ -106,7 +105,6 @@ test("a ticket is spent over a restart", async (t) => {
   assert.equal((await at.open(`/v1/jobs/${id}`, { method: "DELETE", headers: at.headers })).status, 204);
   await at.server.end("SIGTERM");
   at.server = await Server.start(data, "--require-keys");
-  t.after(() => at.server.end("SIGTERM"));
   await refused(await at.send(url), 403, "invalid_link");
 });
 

@@ -51,7 +51,7 @@ export class Server {
 
   /** The same, by any words that end with those of a program and its command. */
   static async startBy([program, ...words], env, data, ...flags) {
-    const server = new Server();
+    const server = Object.assign(new Server(), { data });
     const all = [...words, "--data", data, ...flags];
     for (const [flag, value] of USUAL) if (!flags.includes(flag)) all.push(flag, value);
     server.process = spawn(program, all, {
@@ -110,10 +110,13 @@ export class Server {
   }
 }
 
-/** A directory for servers, gone after the test. */
+/** A directory for servers, gone after the test, with those that still work in it. */
 export function dataDirectory(t) {
   const data = mkdtempSync(join(tmpdir(), "unwrapd-fault-"));
-  t.after(() => rmSync(data, { recursive: true, force: true }));
+  t.after(async () => {
+    await Promise.all([...servers].filter((server) => server.data.startsWith(data)).map((server) => server.end("SIGKILL")));
+    rmSync(data, { recursive: true, force: true });
+  });
   return data;
 }
 
