@@ -1,5 +1,7 @@
 #include "server/store/sqlite_database.hpp"
 
+#include <SQLiteCpp/Backup.h>
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
 #include <cerrno>
@@ -16,9 +18,9 @@ constexpr int kBusyTimeoutMs = 10'000;
 constexpr Dialect kDialect{.least = "MIN", .greatest = "MAX", .has_index_hints = true};
 
 /// Whether the disk is full: SQLite knows only ENOSPC.
-bool is_full(sqlite3* handle, int code) {
-  if (code != SQLITE_IOERR) return code == SQLITE_FULL;
-  const int reason = sqlite3_system_errno(handle);
+bool is_full(const SQLite::Database* sqlite, int code) {
+  if (code != SQLITE_IOERR || sqlite == nullptr) return code == SQLITE_FULL;
+  const int reason = sqlite3_system_errno(sqlite->getHandle());
   return reason == EFBIG || reason == EDQUOT;
 }
 
@@ -41,98 +43,74 @@ std::string_view advice(int code) {
       "The server's file " + file + " failed (" + reason + "); " + std::string(advice(code)) + ".");
 }
 
+}  // namespace
+
+template <class Call>
+auto SqliteDatabase::call(const Call& make) const {
+  try {
+    return make(*sqlite_);
+  } catch (const SQLite::Exception& e) {
+    fail(e);
+  }
+}
+
+namespace {
+
 class SqliteCursor final : public Cursor {
  public:
-  SqliteCursor(const SqliteDatabase& database, std::string_view sql) : database_(database) {
-    sqlite3_stmt* statement = nullptr;
-    const int size = static_cast<int>(sql.size());
-    if (sqlite3_prepare_v2(database.handle(), sql.data(), size, &statement, nullptr) != SQLITE_OK)
-      database.fail();
-    statement_.reset(statement);
-  }
+  SqliteCursor(const SqliteDatabase& database, std::string_view sql)
+      : database_(database), statement_(database.call([&](SQLite::Database& sqlite) {
+          return SQLite::Statement(sqlite, std::string(sql));
+        })) {}
 
   void bind(int position, std::string_view text) override {
-    const auto size = static_cast<sqlite3_uint64>(text.size());
-    const char* bytes = text.empty() ? "" : text.data();
-    if (sqlite3_bind_text64(statement_.get(), position, bytes, size, SQLITE_TRANSIENT,
-                            SQLITE_UTF8) != SQLITE_OK)
-      database_.fail();
+    database_.call([&](auto&) { statement_.bind(position, std::string(text)); });
   }
 
   void bind(int position, std::int64_t number) override {
-    if (sqlite3_bind_int64(statement_.get(), position, number) != SQLITE_OK) database_.fail();
+    database_.call([&](auto&) { statement_.bind(position, number); });
   }
 
   bool step() override {
-    const int result = sqlite3_step(statement_.get());
-    if (result != SQLITE_ROW && result != SQLITE_DONE) database_.fail();
-    return result == SQLITE_ROW;
+    return database_.call([&](auto&) { return statement_.executeStep(); });
   }
 
   [[nodiscard]] std::int64_t number(int column) const override {
-    return sqlite3_column_int64(statement_.get(), column);
+    return database_.call([&](auto&) { return statement_.getColumn(column).getInt64(); });
   }
 
   [[nodiscard]] std::string text(int column) const override {
-    const unsigned char* bytes = sqlite3_column_text(statement_.get(), column);
-    const int size = sqlite3_column_bytes(statement_.get(), column);
-    if (bytes == nullptr) return {};
-    return {bytes, bytes + size};
+    return database_.call([&](auto&) { return statement_.getColumn(column).getString(); });
   }
 
  private:
-  struct Finalize {
-    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-  };
   const SqliteDatabase& database_;
-  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
-};
-
-/// Rolls back unless it was committed.
-class Transaction {
- public:
-  explicit Transaction(SqliteDatabase& database) : database_(database) {
-    database.run("BEGIN IMMEDIATE");
-  }
-  Transaction(const Transaction&) = delete;
-  Transaction& operator=(const Transaction&) = delete;
-  ~Transaction() {
-    if (!committed_) sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
-  }
-  void commit() {
-    database_.run("COMMIT");
-    committed_ = true;
-  }
-
- private:
-  SqliteDatabase& database_;
-  bool committed_ = false;
+  mutable SQLite::Statement statement_;  // its columns are not const
 };
 
 }  // namespace
 
-void SqliteDatabase::Close::operator()(sqlite3* handle) const { sqlite3_close_v2(handle); }
-
 SqliteDatabase::SqliteDatabase(const std::filesystem::path& path, Access access)
     : name_(path.filename()) {
-  sqlite3* handle = nullptr;
   const bool writes = access == Access::write;
-  const int flags = writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
-  const int result = sqlite3_open_v2(path.c_str(), &handle, flags | SQLITE_OPEN_NOMUTEX, nullptr);
-  handle_.reset(handle);
-  if (result != SQLITE_OK) fail();
-  sqlite3_busy_timeout(handle, kBusyTimeoutMs);
+  const int flags = writes ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
+  try {
+    sqlite_ = std::make_unique<SQLite::Database>(path.string(), flags | SQLite::OPEN_NOMUTEX,
+                                                 kBusyTimeoutMs);
+  } catch (const SQLite::Exception& e) {
+    fail(e);
+  }
   if (writes)
     run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
 }
 
-void SqliteDatabase::fail() const {
-  sqlite3* const handle = handle_.get();
-  const int code = handle != nullptr ? sqlite3_errcode(handle) : SQLITE_NOMEM;
+SqliteDatabase::~SqliteDatabase() = default;
+
+void SqliteDatabase::fail(const SQLite::Exception& e) const {
+  const int code = e.getErrorCode();
   if (is_damage(code)) damaged_ = true;
-  if (handle != nullptr && is_full(handle, code))
-    throw Error(ErrorCode::storage_full, std::string(kStorageFull));
-  fail_with(code, name_, handle != nullptr ? sqlite3_errmsg(handle) : "out of memory");
+  if (is_full(sqlite_.get(), code)) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
+  fail_with(code, name_, e.what());
 }
 
 void SqliteDatabase::check(bool indices) const {
@@ -145,19 +123,17 @@ void SqliteDatabase::check(bool indices) const {
 
 void SqliteDatabase::copy_to(const std::filesystem::path& to) const {
   SqliteDatabase copy(to);
-  sqlite3_backup* backup = sqlite3_backup_init(copy.handle(), "main", handle(), "main");
-  if (backup == nullptr) copy.fail();
-  const int stepped = sqlite3_backup_step(backup, -1);  // all in one read transaction
-  const int finished = sqlite3_backup_finish(backup);
-  if (stepped != SQLITE_DONE || finished != SQLITE_OK) copy.fail();
+  copy.call([&](SQLite::Database& sqlite) {
+    SQLite::Backup(sqlite, *sqlite_).executeStep();  // all in one read transaction
+  });
   copy.run("PRAGMA journal_mode = DELETE");
 }
 
 void SqliteDatabase::run(const std::string& sql) {
-  if (sqlite3_exec(handle(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+  call([&](SQLite::Database& sqlite) { sqlite.exec(sql); });
 }
 
-int SqliteDatabase::changes() const { return sqlite3_changes(handle()); }
+int SqliteDatabase::changes() const { return sqlite_->getChanges(); }
 
 std::unique_ptr<Cursor> SqliteDatabase::prepare(std::string_view sql) const {
   return std::make_unique<SqliteCursor>(*this, sql);
@@ -176,9 +152,11 @@ void SqliteDatabase::set_version(std::int64_t version) {
 /// One statement is a transaction by itself.
 void SqliteDatabase::apply_all(Extent extent, const std::function<void()>& make) {
   if (extent == Extent::one) return make();
-  Transaction all(*this);
-  make();
-  all.commit();
+  call([&](SQLite::Database& sqlite) {
+    SQLite::Transaction all(sqlite, SQLite::TransactionBehavior::IMMEDIATE);
+    make();
+    all.commit();
+  });
 }
 
 }  // namespace unwrapd::server::store

@@ -1,5 +1,5 @@
 #pragma once
-// SQLite with values that clean up after themselves: the engine of a store that is a file.
+// SQLite, called through SQLiteCpp: the engine of a store that is a file.
 
 #include <atomic>
 #include <filesystem>
@@ -8,7 +8,10 @@
 
 #include "server/store/database.hpp"
 
-struct sqlite3;
+namespace SQLite {
+class Database;
+class Exception;
+}  // namespace SQLite
 
 namespace unwrapd::server::store {
 
@@ -19,6 +22,7 @@ class SqliteDatabase final : public Database {
 
   /// To write: made when it is missing.
   explicit SqliteDatabase(const std::filesystem::path& path, Access access = Access::write);
+  ~SqliteDatabase() override;
 
   void run(const std::string& sql) override;
   [[nodiscard]] std::unique_ptr<Cursor> prepare(std::string_view sql) const override;
@@ -34,18 +38,16 @@ class SqliteDatabase final : public Database {
   /// Makes a file of the state of one moment, while others write (SQLite's backup API). It has no
   /// -wal file beside it, and is on the disk on return.
   void copy_to(const std::filesystem::path& to) const;
-  [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
-  /// Throws what the last failure of this connection was.
-  [[noreturn]] void fail() const;
+  /// What make() returns, with SQLiteCpp's exceptions as ours.
+  template <class Call>
+  auto call(const Call& make) const;
 
  private:
-  struct Close {
-    void operator()(sqlite3* handle) const;
-  };
+  [[noreturn]] void fail(const SQLite::Exception& e) const;
   void apply_all(Extent extent, const std::function<void()>& make) override;
 
   std::string name_;  // of the file
-  std::unique_ptr<sqlite3, Close> handle_;
+  std::unique_ptr<SQLite::Database> sqlite_;
   mutable std::atomic<bool> damaged_ = false;
 };
 
