@@ -1,6 +1,7 @@
 // The image as it is meant to run: another user, nothing writable but the volume, no capability,
 // little memory, a key in a mounted file. A job is stopped by SIGTERM in its middle and ends well at
 // the next start.
+// Podman plays the Kubernetes objects, too: of one node, and of a farm on a real PostgreSQL.
 // UNWRAPD_ENGINE names docker or podman, UNWRAPD_IMAGE the image.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
@@ -12,7 +13,10 @@ import { join } from "node:path";
 import test, { after } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
+import yaml from "js-yaml";
+
 import { grid } from "../fault/server.mjs";
+import { isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
 
 const { UNWRAPD_ENGINE: engine, UNWRAPD_IMAGE: image } = process.env;
 const name = `unwrapd-test-${randomBytes(4).toString("hex")}`;
@@ -141,6 +145,14 @@ async function unwrapsAndGoesOn() {
   run("stop", "--time", "30", name);
 }
 
+/** Where it was not played, that is the error to tell. */
+function unplay(file, volumes, secrets) {
+  const named = (all) => all.map((one) => `${name}-${one}`);
+  spawnSync(engine, ["play", "kube", "--down", file]);
+  spawnSync(engine, ["volume", "rm", "--force", ...named(volumes)]);
+  spawnSync(engine, ["secret", "rm", ...named(secrets)]);
+}
+
 test("podman plays the Kubernetes objects", async (context) => {
   if (engine !== "podman") return context.skip("only podman can play them");
   const file = join(scratch, "kube.yaml");
@@ -155,7 +167,57 @@ test("podman plays the Kubernetes objects", async (context) => {
     await until("the pod", async () => run("exec", `${name}-pod-0-${name}`, "unwrapd", "--healthcheck",
       "--admin-listen", "127.0.0.1:8081") === "");
   } finally {
-    spawnSync(engine, ["play", "kube", "--down", file]);  // where it was not played, that is the error to tell
-    spawnSync(engine, ["volume", "rm", "--force", `${name}-data`, `${name}-config`, `${name}-key`]);
+    unplay(file, ["data", "config", "key"], ["key"]);
   }
+});
+
+const NETWORK = "podman-default-kube-network";
+
+/**
+ * What podman 4.3 plays of the farm, named for this test. It shares volumes that pods have for themselves,
+ * takes the ports of a container from the host, and leaves files of secrets in base64.
+ */
+function playedFarm(text) {
+  const objects = yaml.loadAll(text.replaceAll("unwrapd-", `${name}-`).replaceAll("name: unwrapd-farm", `name: ${name}-farm`))
+    .filter(({ kind }) => ["PersistentVolumeClaim", "ConfigMap", "Deployment"].includes(kind));
+  for (const { kind, metadata, spec } of objects) {
+    if (kind !== "Deployment") continue;
+    spec.replicas = 1;
+    const [container] = spec.template.spec.containers;
+    container.image = image;
+    delete container.ports;
+    for (const volume of [...spec.template.spec.volumes, ...container.volumeMounts])
+      if (volume.name === "data") volume.name = `${metadata.name}-data`;
+  }
+  return objects;
+}
+
+test("podman plays a farm, whose worker ends the jobs that another node takes in", async (t) => {
+  if (engine !== "podman") return t.skip("only podman can play it");
+  if (!isInstalled()) return t.skip(NOT_INSTALLED);
+  const port = await freePorts();
+  const postgres = new Postgres({ sync: false, settings: { listen_addresses: "*", port } });
+  const objects = playedFarm(readFileSync(new URL("../../docker/kubernetes/farm.yaml", import.meta.url), "utf8"));
+  const file = join(scratch, "farm.yaml");
+  t.after(() => {
+    unplay(file, ["blobs", "farm", "key", "serve-data", "worker-data"], ["key", "database"]);
+    postgres.remove();
+  });
+  const [{ subnets: [{ gateway }] }] = JSON.parse(run("network", "inspect", NETWORK));
+  const database = join(scratch, "database.json"); // of a secret that sets variables podman reads JSON, not YAML
+  writeFileSync(database, JSON.stringify({ url: btoa(`postgres://postgres@${gateway}:${port}/postgres`) }));
+  run("secret", "create", `${name}-database`, database);
+  const secret = { apiVersion: "v1", kind: "Secret", metadata: { name: `${name}-key` }, data: { key: btoa(key) } };
+  writeFileSync(file, [secret, ...objects].map((object) => yaml.dump(object)).join("---\n"));
+  run("play", "kube", file);
+
+  const pod = JSON.parse(run("pod", "inspect", `${name}-serve-pod-0`));
+  const [infra] = JSON.parse(run("inspect", pod.InfraContainerID));
+  url = `http://${infra.NetworkSettings.Networks[NETWORK].IPAddress}:8080`;
+  holder.Authorization = `Bearer ${btoa(key)}`;
+  await until("the farm", async () => (await fetch(url.replace("8080", "8081/readyz"))).ok);
+  const id = await submit("", 20);
+  await until("a job of the worker's", async () => (await job(id)).state === "succeeded");
+  const obj = await (await fetch(`${url}/v1/jobs/${id}/result`, { headers: holder })).text();
+  assert.equal(obj.match(/^vt /gm).length, 21 * 21);
 });
