@@ -1,19 +1,21 @@
-// Runs what ctest lists, many GoogleTest cases in a process: under sanitizers a process takes longer
-// to start and to end than most cases take to run.
+// Runs what ctest lists, many GoogleTest cases in a process: a process takes longer to start and to end
+// than most cases take to run.
 //
 //   node tests/batches/in_batches.mjs BUILD_FOLDER JOBS [--except FILE] [CTEST ARGUMENTS...]
 //
 // FILE has a regular expression a line: tests whose names begin with one are left out. (ctest's own
-// expressions may have ten groups.) What fails is told as it fails, with its output. Cases that a crash kept from running run in a
-// process of their own. The slowest tests are told at the end. The last line counts: "N passed, N
-// failed, N skipped". Exits with 1 where a test failed, and with 2 where there was none.
+// expressions may have ten groups.) Tests with a COST begin first, the dearest before the others. What
+// fails is told as it fails, with its output. Cases that a crash kept from running run in a process of
+// their own. The slowest tests are told at the end. The last line counts: "N passed, N failed, N
+// skipped". Exits with 1 where a test failed, and with 2 where there was none.
 import { execFileSync, spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 const kCasesOfABatch = 12;
-const kSecondsOfAProcess = 600;
+const kSecondsOfAProcess = 600;  // where a test has no TIMEOUT
+const kMsUntilClosed = 5000;     // after which what a process has left behind may keep its output
 const kSkippedExit = 77;
 const kSlowestTold = 12;
 
@@ -48,6 +50,8 @@ function listedTests() {
       cwd: property('WORKING_DIRECTORY') ?? folder,
       env: { ...process.env, ...Object.fromEntries((property('ENVIRONMENT') ?? []).map(
         (line) => [line.slice(0, line.indexOf('=')), line.slice(line.indexOf('=') + 1)])) },
+      timeout: property('TIMEOUT') ?? kSecondsOfAProcess,
+      cost: property('COST') ?? 0,
       program,
       testCase: isOneCase ? filter.slice('--gtest_filter='.length) : undefined,
     };
@@ -66,15 +70,15 @@ function batchesOf(tests) {
   return batches;
 }
 
-function run(command, { cwd, env }) {
+function run(command, { cwd, env, timeout }) {
   return new Promise((resolve) => {
     let output = '';
     const child = spawn(command[0], command.slice(1),
       { cwd, env, stdio: ['ignore', 'pipe', 'pipe'] });
     const timer = setTimeout(() => {
-      output += `\nkilled: it ran longer than ${kSecondsOfAProcess} s\n`;
+      output += `\nkilled: it ran longer than ${timeout} s\n`;
       child.kill('SIGKILL');
-    }, kSecondsOfAProcess * 1000);
+    }, timeout * 1000);
     const end = (status) => {
       clearTimeout(timer);
       resolve({ status, output });
@@ -85,12 +89,26 @@ function run(command, { cwd, env }) {
       output += `${error.message}\n`;
       end(-1);
     });
+    child.on('exit', () => setTimeout(() => {
+      child.stdout.destroy();
+      child.stderr.destroy();
+    }, kMsUntilClosed).unref());
     child.on('close', end);
   });
 }
 
+/** A line for each tenth of all tests. */
+function tellShare() {
+  const ended = counts.passed + counts.failed + counts.skipped;
+  const tenths = Math.floor((10 * ended) / tests.length);
+  if (tenths === Math.floor((10 * (ended - 1)) / tests.length)) return;
+  const failures = counts.failed ? `, ${counts.failed} failed` : '';
+  console.log(`${10 * tenths} %: ${ended} of ${tests.length} tests${failures}`);
+}
+
 function end(test, outcome, output = '') {
   counts[outcome] += 1;
+  tellShare();
   if (outcome !== 'failed') return;
   failed.push(test.name);
   process.stdout.write(`${output}\n** FAILED: ${test.name}\n`);
@@ -159,7 +177,7 @@ async function runBatch(batch, number) {
 }
 
 const tests = listedTests();
-const batches = batchesOf(tests);
+const batches = batchesOf(tests).sort(([a], [b]) => b.cost - a.cost);
 let next = 0;
 const worker = async () => {
   while (next < batches.length) {

@@ -21,7 +21,7 @@ function run(cases, others = [], except = undefined) {
   const list = join(folder, 'except.txt');
   if (except) writeFileSync(list, except);
   const { status, stdout } = spawnSync('node',
-    [runner, folder, '2', ...(except ? ['--except', list] : [])], { encoding: 'utf8' });
+    [runner, folder, '2', ...(except ? ['--except', list] : [])], { encoding: 'utf8', timeout: 60_000 });
   rmSync(folder, { recursive: true });
   const all = stdout.trimEnd().split('\n');
   return { status, stdout, last: all.at(-1),
@@ -75,4 +75,19 @@ test('a list that leaves nothing to run is a failure', () => {
 
 test('no test at all is a failure', () => {
   assert.equal(run([]).status, 2);
+});
+
+test('a test that takes too long is killed, whatever it leaves behind', () => {
+  const { last, failed, stdout } = run([], ['add_test(endless "sh" "-c" "sleep 120 & sleep 300")',
+    'set_tests_properties(endless PROPERTIES TIMEOUT 1)']);
+  assert.equal(last, '0 passed, 1 failed, 0 skipped');
+  assert.deepEqual(failed, ['endless']);
+  assert.match(stdout, /killed: it ran longer than 1 s/);
+});
+
+test('dear tests begin first, and every tenth is told', () => {
+  const { stdout } = run([], ['add_test(cheap "sleep" "1")', 'add_test(other "sleep" "1")', 'add_test(dear "false")',
+    'set_tests_properties(dear PROPERTIES COST 9)']);
+  assert.deepEqual(stdout.match(/^\d+ %: .*|^\*\* FAILED: \w+/gm),
+    ['30 %: 1 of 3 tests, 1 failed', '** FAILED: dear', '60 %: 2 of 3 tests, 1 failed', '100 %: 3 of 3 tests, 1 failed']);
 });

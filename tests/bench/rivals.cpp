@@ -78,13 +78,13 @@ Times time_eigen(const linear::ComplexMatrix& lower) { return time_simplicial(lo
 
 #ifdef UNWRAPD_HAS_CHOLMOD
 
-std::optional<Times> time_cholmod(const SparseMatrix& lower, Unknowns unknowns) {
+std::optional<Times> time_cholmod(const linear::SparseMatrix& lower, Unknowns unknowns) {
   cholmod_common common;
   cholmod_start(&common);
   common.nmethods = 1;
   common.method[0].ordering = CHOLMOD_AMD;
   common.supernodal = CHOLMOD_SUPERNODAL;
-  SparseMatrix copy = lower;
+  linear::SparseMatrix copy = lower;
   const auto n = static_cast<std::size_t>(lower.cols());
   cholmod_sparse matrix{};
   matrix.nrow = matrix.ncol = n;
