@@ -27,11 +27,11 @@ constexpr std::chrono::seconds kProbePatience{20};
 SandboxLimits sandbox_limits(const api::Limits& limits, const Isolation& isolation) {
   const std::int64_t seconds =
       (std::int64_t{limits.max_job_seconds} + kSpareSeconds) * isolation.threads;
-  return {
-      .memory_bytes = isolation.memory_bytes + kProgramReserve + isolation.threads * kThreadReserve,
-      .processor_seconds =
-          static_cast<int>(std::min<std::int64_t>(seconds, std::numeric_limits<int>::max())),
-      .threads = isolation.threads};
+  return {.memory_bytes = isolation.memory_bytes + kKeptForMesh + kProgramReserve +
+                          isolation.threads * kThreadReserve,
+          .processor_seconds =
+              static_cast<int>(std::min<std::int64_t>(seconds, std::numeric_limits<int>::max())),
+          .threads = isolation.threads};
 }
 
 void send_asset(Conversation& worker, const asset::Input& input) {
@@ -39,11 +39,20 @@ void send_asset(Conversation& worker, const asset::Input& input) {
   for (const auto& [uri, bytes] : input.buffers) worker.send(FrameKind::buffer, uri, bytes);
 }
 
-/// A worker process that has received the whole job by tell(): a spare one, or else a new one. A
-/// process that ends before that, maybe while it waited, does not count against the job.
+/// The mesh of a job and its owner, whose further jobs the same process may do; empty for none. Of
+/// a mesh in several parts the name of one says too little.
+std::string mesh_of(const JobTask& task, const asset::Input& input) {
+  if (!input.buffers.empty() || task.record.input.sha256.empty()) return {};
+  return task.record.owner + ' ' + task.record.input.sha256;
+}
+
+/// A worker process that has received the whole job by tell(): one that has done a job of this
+/// mesh, a spare one, or else a new one. A process that ends before that, maybe while it waited,
+/// does not count against the job.
 template <class Tell>
 std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::Limits& limits,
-                                         const Stopping& stopping, const Tell& tell) {
+                                         const Stopping& stopping, const Tell& tell,
+                                         const std::string& mesh = {}) {
   const auto told = [&](StartedWorker started) {
     auto worker = std::make_unique<WorkerProcess>(std::move(started), stopping);
     NoOutput none;
@@ -53,12 +62,18 @@ std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::
     conversation.send(FrameKind::begin, {}, {});
     return worker;
   };
-  auto spare = isolation.spares ? isolation.spares->take() : std::nullopt;
-  try {
-    if (spare) return told(std::move(*spare));
-  } catch (const WorkerCrashed&) {
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::internal) throw;
+  const auto tried = [&](std::optional<StartedWorker> waiting) -> std::unique_ptr<WorkerProcess> {
+    try {
+      if (waiting) return told(std::move(*waiting));
+    } catch (const WorkerCrashed&) {
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::internal) throw;
+    }
+    return nullptr;
+  };
+  if (isolation.spares) {
+    if (auto worker = tried(isolation.spares->take_back(mesh))) return worker;
+    if (auto worker = tried(isolation.spares->take())) return worker;
   }
   return told(StartedWorker(isolation.program, sandbox_limits(limits, isolation)));
 }
@@ -139,14 +154,23 @@ std::unique_ptr<WorkerProcess> worker_for(const JobTask& task, bool is_helper,
     conversation.send(FrameKind::task, {}, pack_task(shape, task.record));
     send_asset(conversation, input);
   };
-  return worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell);
+  return worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell,
+                   is_helper ? std::string() : mesh_of(task, input));
 }
 
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
                              const api::Limits& limits, const Isolation& isolation) {
+  const auto begun = std::chrono::steady_clock::now();
   const auto worker = worker_for(task, false, input, limits, isolation);
   const std::size_t maps = map_count(task.record);
-  return Conversation(*worker, output, isolation.memory_bytes, maps, task.desk).listen();
+  std::string format =
+      Conversation(*worker, output, isolation.memory_bytes, maps, task.desk).listen();
+  const std::string mesh = mesh_of(task, input);
+  if (!isolation.spares || mesh.empty()) return format;
+  if (auto answered = worker->release())
+    isolation.spares->give_back(mesh, std::move(*answered),
+                                std::chrono::steady_clock::now() - begun);
+  return format;
 }
 
 void help_isolated(const JobTask& task, const asset::Input& input, const api::Limits& limits,

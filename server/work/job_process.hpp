@@ -1,8 +1,9 @@
 #pragma once
 // --isolate: a job, and each file made of it later, is processed in a process of its own without
 // files or network and with bounded memory (sandbox.hpp), so that a crash costs only this job or
-// request. Rejected: a process kept for many jobs (a crash, or a mesh that takes the process over,
-// would reach the next job), and fork without exec (of a program with threads).
+// request. A process may do further jobs of the same mesh and owner (spare_workers.hpp). Rejected:
+// a process kept for other jobs (a crash, or a mesh that takes the process over, would reach the
+// next job), and fork without exec (of a program with threads).
 
 #include <chrono>
 #include <cstdint>

@@ -188,9 +188,7 @@ void draw(const ReceivedJob& job, const Crew& crew, const WorkerFunctions& funct
   send_frame(send_all, FrameKind::rendered, {}, bytes);
 }
 
-void run(const ReceivedJob& job, Crew& crew, const WorkerFunctions& functions) {
-  const std::int64_t memory = job.task.memory_bytes;
-  SolverCache core({.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
+void run(const ReceivedJob& job, Crew& crew, const WorkerFunctions& functions, SolverCache& core) {
   SocketWork shared(send_all, receive_all, job.task.is_helper);
   SharingExecutor executor(crew.threads, core, job.task.is_shared ? &shared : nullptr);
   SocketOutput told;
@@ -207,10 +205,20 @@ void run(const ReceivedJob& job, Crew& crew, const WorkerFunctions& functions) {
   send_frame(send_all, FrameKind::done, format, {});
 }
 
+/// Until the server ends this process, or a job fails. All jobs are of one mesh.
 void work(Crew& crew, const WorkerFunctions& functions) {
-  const ReceivedJob job = receive_job(crew.stop.get_token());
-  if (job.task.rendering) return draw(job, crew, functions);
-  run(job, crew, functions);
+  std::optional<SolverCache> core;
+  while (true) {
+    const ReceivedJob job = receive_job(crew.stop.get_token());
+    if (job.task.rendering) return draw(job, crew, functions);
+    const std::int64_t memory = job.task.memory_bytes;
+    if (!core)
+      core.emplace(MemoryLimits{.cache_bytes = memory / kCacheShare, .job_bytes = memory}, 1);
+    run(job, crew, functions, *core);
+    if (job.task.is_helper || crew.stop.stop_requested()) return;
+    core->shrink_to(kKeptForMesh);
+    send_frame(send_all, FrameKind::ready, {}, {});
+  }
 }
 
 /// The limits are the first message: nothing may be read without them.

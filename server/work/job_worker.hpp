@@ -1,7 +1,9 @@
 #pragma once
 // The side of the worker process in --isolate: unwrapd started again with --job-worker as its only
-// argument and a socket as its standard input. It does one job or rendering, then it ends.
+// argument and a socket as its standard input. It does one job or rendering, then it ends; or it
+// does further jobs of the same mesh, with what it remembers of it.
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -20,6 +22,9 @@ struct WorkerFunctions {
       render;
   std::string program = {};  ///< started with --job-worker for this work; empty: none
 };
+
+/// What a worker process remembers of a mesh between its jobs at most, beside the memory of a job.
+inline constexpr std::int64_t kKeptForMesh = std::int64_t{128} << 20;
 
 inline constexpr const char* kWorkerFlag = "--job-worker";
 

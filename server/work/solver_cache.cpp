@@ -98,11 +98,16 @@ void SolverCache::keep(const Digest& key, Entry& entry) {
   uses_.push_front(key);
   entry.use = uses_.begin();
   counters_.bytes += entry.made.bytes;
-  evict();
+  evict_beyond(most_bytes_);
 }
 
-void SolverCache::evict() {
-  while (counters_.bytes > most_bytes_) {
+void SolverCache::shrink_to(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  evict_beyond(bytes);
+}
+
+void SolverCache::evict_beyond(std::size_t bytes) {
+  while (counters_.bytes > bytes) {
     const auto last = entries_.find(uses_.back());
     counters_.bytes -= last->second->made.bytes;
     entries_.erase(last);

@@ -37,6 +37,8 @@ class SolverCache final : public SharedCache {
                                      const std::stop_token& stop) override;
   [[nodiscard]] std::size_t memory_limit() const override { return job_bytes_; }
 
+  /// Drops the least recently used until the others take no more bytes than that.
+  void shrink_to(std::size_t bytes);
   [[nodiscard]] CacheCounters counters() const;
 
  private:
@@ -50,7 +52,7 @@ class SolverCache final : public SharedCache {
   std::shared_ptr<const void> make_now(const Digest& key, Entry& entry,
                                        const std::function<Made()>& make);
   void keep(const Digest& key, Entry& entry);
-  void evict();
+  void evict_beyond(std::size_t bytes);
 
   const std::size_t most_bytes_, job_bytes_;
   mutable std::mutex mutex_;

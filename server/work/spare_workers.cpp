@@ -1,11 +1,23 @@
 #include "server/work/spare_workers.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include "server/base/threads.hpp"
 
 namespace unwrapd::server::work {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kWaitsForMesh{30};
+constexpr std::chrono::seconds kMostOfAJob{2};   // what takes longer holds much memory
+constexpr std::chrono::seconds kMostWorked{30};  // its processor time is bounded in all
+constexpr std::size_t kKnownMeshes = 256;
+constexpr std::chrono::hours kNoEnd{1};
+
+}  // namespace
 
 SpareWorkers::SpareWorkers(int count, std::function<StartedWorker()> start)
     : count_(static_cast<std::size_t>(count)),
@@ -22,11 +34,53 @@ std::optional<StartedWorker> SpareWorkers::take() {
   return spare;
 }
 
+std::optional<StartedWorker> SpareWorkers::take_back(const std::string& mesh) {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find(returned_, mesh, &Returned::mesh);
+  if (found == returned_.end()) return std::nullopt;
+  std::optional<StartedWorker> worker(std::move(found->worker));
+  returned_.erase(found);
+  return worker;
+}
+
+void SpareWorkers::give_back(const std::string& mesh, StartedWorker worker, Clock::duration job) {
+  worker.count(job);
+  const std::lock_guard lock(mutex_);
+  if (!note_mesh(mesh) || job > kMostOfAJob || worker.worked() > kMostWorked) return;
+  if (returned_.size() == count_) return;
+  returned_.push_back({mesh, std::move(worker), Clock::now() + kWaitsForMesh});
+  has_returned_ = true;
+  wanted_.notify_one();
+}
+
+/// There is a job of it now. Returns whether there was one not long ago.
+bool SpareWorkers::note_mesh(const std::string& mesh) {
+  if (std::ranges::find(known_, mesh) != known_.end()) return true;
+  known_.push_back(mesh);
+  if (known_.size() > kKnownMeshes) known_.pop_front();
+  return false;
+}
+
+/// Processes end outside of the lock: the kernel takes their memory back first.
+void SpareWorkers::end_late(std::unique_lock<std::mutex>& lock) {
+  std::vector<Returned> late;
+  for (; !returned_.empty() && returned_.front().until <= Clock::now(); returned_.pop_front())
+    late.push_back(std::move(returned_.front()));
+  lock.unlock();
+  late.clear();
+  lock.lock();
+}
+
 void SpareWorkers::keep(const std::stop_token& stop) {
   give_way();
   const auto is_wanted = [this] { return spares_.size() < count_ && !has_failed_; };
   std::unique_lock lock(mutex_);
-  while (wanted_.wait(lock, stop, is_wanted) && !stop.stop_requested()) {
+  while (!stop.stop_requested()) {
+    has_returned_ = false;
+    const Time due = returned_.empty() ? Clock::now() + kNoEnd : returned_.front().until;
+    wanted_.wait_until(lock, stop, due, [&] { return is_wanted() || has_returned_; });
+    end_late(lock);
+    if (!is_wanted() || stop.stop_requested()) continue;
     lock.unlock();
     std::optional<StartedWorker> spare = started();
     lock.lock();

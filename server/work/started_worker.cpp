@@ -88,7 +88,9 @@ StartedWorker::StartedWorker(const std::string& program, const SandboxLimits& li
 }
 
 StartedWorker::StartedWorker(StartedWorker&& other) noexcept
-    : socket_(std::exchange(other.socket_, -1)), process_(std::exchange(other.process_, -1)) {}
+    : socket_(std::exchange(other.socket_, -1)),
+      process_(std::exchange(other.process_, -1)),
+      worked_(other.worked_) {}
 
 StartedWorker::~StartedWorker() {
   if (process_ > 0) end();

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <string>
 
 #include "server/work/sandbox.hpp"
@@ -23,12 +24,17 @@ class StartedWorker {
   [[nodiscard]] int socket() const { return socket_; }
   [[nodiscard]] pid_t process() const { return process_; }
 
+  /// The time of the jobs that it has done.
+  [[nodiscard]] std::chrono::steady_clock::duration worked() const { return worked_; }
+  void count(std::chrono::steady_clock::duration job) { worked_ += job; }
+
   /// Ends the process if it has not ended yet. Returns how it ended, as wait(2) tells it.
   int end();
 
  private:
   int socket_ = -1;
   pid_t process_ = -1;
+  std::chrono::steady_clock::duration worked_{};
 };
 
 }  // namespace unwrapd::server::work

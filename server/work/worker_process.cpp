@@ -99,6 +99,12 @@ bool WorkerProcess::receive(char* data, std::size_t size) {
   return true;
 }
 
+std::optional<StartedWorker> WorkerProcess::release() {
+  on_stop_.reset();
+  if (kill_at_) return std::nullopt;
+  return std::move(worker_);
+}
+
 void WorkerProcess::reap() {
   const int status = worker_.end();
   if (kill_at_) throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");

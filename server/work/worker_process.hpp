@@ -32,6 +32,9 @@ class WorkerProcess {
   /// Fills the memory; false when the worker has gone.
   bool receive(char* data, std::size_t size);
 
+  /// The worker, which has answered: it may have another job. None if it was told to stop.
+  [[nodiscard]] std::optional<StartedWorker> release();
+
   /// The worker has gone without an answer: throws Error{cancelled} when it was stopped, Error
   /// {time_limit} when its processor time ran out, else WorkerCrashed, saying how it ended.
   [[noreturn]] void reap();

@@ -1,7 +1,8 @@
 // Worker processes that wait for their jobs: what they may is bounded before a job comes, each is for
-// one job, and what becomes of them while they wait is held against none. UNWRAPD names the server of
-// misbehaving_main.cpp.
+// one job, or for those of one mesh and owner, and what becomes of them while they wait is held against
+// none. UNWRAPD names the server of misbehaving_main.cpp.
 import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
 import {readFileSync} from 'node:fs';
 import test, {after, before} from 'node:test';
 import {setTimeout as sleep} from 'node:timers/promises';
@@ -9,7 +10,7 @@ import {setTimeout as sleep} from 'node:timers/promises';
 import {request} from '../contract/http.mjs';
 import * as meshes from '../contract/meshes.mjs';
 import {startServer, withServer} from '../contract/server.mjs';
-import {hasEnded, heldMemory, niceness, spares} from './processes.mjs';
+import {children, hasEnded, heldMemory, niceness, spares} from './processes.mjs';
 
 const kWorkers = 2;
 const kFlags = ['--isolate', '--workers', String(kWorkers), '--threads', '3', '--memory-limit', '200000000',
@@ -46,7 +47,7 @@ test('a process waits for each worker, with the bounds that its job will have', 
   for (const pid of await waiting()) {
     const limits = readFileSync(`/proc/${pid}/limits`, 'utf8');
     const of = (what) => limits.match(new RegExp(`^${what} +(\\S+) +(\\S+)`, 'm')).slice(1).map(Number);
-    const memory = 200_000_000 + 256 * kMegabyte + 3 * 80 * kMegabyte;
+    const memory = 200_000_000 + (128 + 256 + 3 * 80) * kMegabyte;
     assert.deepEqual(of('Max address space'), [memory, memory]);
     assert.deepEqual(of('Max cpu time'), [300, 300]);
     assert.deepEqual(of('Max open files'), [3, 3]);
@@ -108,6 +109,78 @@ test('a process that waits holds the memory of a large job, once there was one, 
   const later = (await spares(other.pid, kWorkers)).at(-1);
   while (heldMemory(later) < 16 * kMegabyte) await sleep(5);
   assert.ok(heldMemory(later) < 48 * kMegabyte);
+});
+
+/** A server of a test's own, and what sends it one mesh in jobs of which no two agree. */
+async function manyJobs(t, flags = kFlags, body = another()) {
+  const own = await startServer(process.env.UNWRAPD, flags);
+  t.after(() => own.stop());
+  let padding = 0;
+  const send = async (more = {}, query = '') => {
+    const headers = {'Content-Type': 'model/obj', Prefer: 'wait=60', ...more};
+    const path = `/v1/jobs?padding=${++padding}${query}`;
+    const answer = await request(own.base, {method: 'POST', path, headers, body});
+    assert.equal(answer.status, 200, answer.body.toString());
+    return JSON.parse(answer.body.toString());
+  };
+  const result = async ({id}) => (await request(own.base, {path: `/v1/jobs/${id}/result`})).body;
+  return {own, body, send, result};
+}
+
+/** Sends a mesh twice; resolves to the process that then waits for its third job: the oldest. */
+async function keptBy({own, send}, more) {
+  await send(more);
+  await spares(own.pid, kWorkers);  // nothing waits for another job: most meshes are sent once
+  await send(more);
+  return (await spares(own.pid, kWorkers + 1))[0];
+}
+
+test('a process does all further jobs of a mesh that comes again, with the bytes of any other', async (t) => {
+  const many = await manyJobs(t);
+  const kept = await keptBy(many);
+  const before = children(many.own.pid);
+  const results = [];
+  for (let k = 0; k < 3; k++) results.push(await many.result(await many.send()));
+  assert.deepEqual(children(many.own.pid), before, 'no process was started, and none has ended');
+  process.kill(Number(kept), 'SIGKILL');  // not held against the next job
+  while (!hasEnded(kept)) await sleep(5);
+  assert.equal((await many.send()).state, 'succeeded');
+  assert.doesNotMatch(many.own.log(), /a worker process ended/);
+  const other = await manyJobs(t, ['--isolate=off', ...kFlags.slice(1)], many.body);
+  for (let k = 0; k < 2; k++) await other.send();
+  for (const result of results) assert.ok(result.equals(await other.result(await other.send())));
+});
+
+test('a process that has failed a job, or was stopped, does no other', async (t) => {
+  const many = await manyJobs(t);
+  const kept = await keptBy(many);
+  const failed = await many.send({}, '&resolution=16&max_pages=1&texels_per_unit=1000');
+  assert.equal(failed.problem.code, 'does_not_fit');
+  while (!hasEnded(kept)) await sleep(5);
+  await spares(many.own.pid, kWorkers);
+});
+
+test('no process does the jobs of another owner', async (t) => {
+  const many = await manyJobs(t, [...kFlags, '--require-keys']);
+  const holder = (name) => {
+    const words = ['keys', 'add', '--name', name, '--data', many.own.data];
+    const [, key] = /^(unw_\S+)$/m.exec(execFileSync(process.env.UNWRAPD, words, {encoding: 'utf8'}));
+    return {Authorization: `Bearer ${key}`};
+  };
+  const [one, other] = ['one', 'other'].map(holder);
+  const kept = await keptBy(many, one);
+  process.kill(Number(kept), 'SIGSTOP');  // whoever gets it waits
+  for (let k = 0; k < 3; k++) assert.equal((await many.send(other)).state, 'succeeded');
+  process.kill(Number(kept), 'SIGCONT');
+});
+
+test('a process waits half a minute for the next job of its mesh', async (t) => {
+  const many = await manyJobs(t);
+  const kept = await keptBy(many);
+  const begun = Date.now();
+  while (!hasEnded(kept)) await sleep(100);
+  assert.ok(Date.now() - begun > 20_000);
+  assert.equal((await spares(many.own.pid, kWorkers)).includes(kept), false);
 });
 
 test('no process outlives its server', async () => {

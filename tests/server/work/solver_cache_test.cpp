@@ -50,6 +50,18 @@ TEST(SolverCache, DropsWhatWasNotUsedLongest) {
   EXPECT_GE(cache.counters().evictions, 2U);
 }
 
+TEST(SolverCache, ShrinksToWhatWasUsedLast) {
+  SolverCache cache({.cache_bytes = 100, .job_bytes = kPlenty}, 1);
+  for (char name : {'a', 'b', 'c', 'a'}) ask(cache, name, name);
+  cache.shrink_to(29);
+  EXPECT_EQ(cache.counters().bytes, 20U);
+  EXPECT_EQ(ask(cache, 'a', 0), 'a');
+  EXPECT_EQ(ask(cache, 'c', 0), 'c');
+  cache.shrink_to(0);
+  EXPECT_EQ(cache.counters().entries, 0U);
+  EXPECT_EQ(ask(cache, 'a', 1), 1);
+}
+
 TEST(SolverCache, HandsOutWhatIsTooLargeToKeep) {
   SolverCache cache({.cache_bytes = 30, .job_bytes = kPlenty}, 1);
   ask(cache, 'b', 7);
