@@ -70,7 +70,7 @@ const benches = [
   ['store', ['store', '1000'], 1, ofStore],
   ['cost', ['cost', '1', file('closed/spot_control_mesh.obj')], 0.5],
   ['farm', ['farm', '100'], 1.5, ofFarm],
-  ['scene', ['scene', '150', '1'], 3, ofScene],
+  ['scene', ['scene', '200', '1'], 3, ofScene],
   ['defaults', ['defaults', file('closed/spot_control_mesh.obj'), file('closed/torus.obj')], 0.5,
    () => ofDefaults(kept('defaults.json'))],
   ['converge', ['converge', file('paper/Isis_dABF.obj')], 0.5],
