@@ -107,7 +107,7 @@ SqliteDatabase::SqliteDatabase(const std::filesystem::path& path, Access access)
 SqliteDatabase::~SqliteDatabase() = default;
 
 void SqliteDatabase::fail(const SQLite::Exception& e) const {
-  const int code = e.getErrorCode();
+  const int code = e.getErrorCode() & 0xff;  // some calls throw extended codes
   if (is_damage(code)) damaged_ = true;
   if (is_full(sqlite_.get(), code)) throw Error(ErrorCode::storage_full, std::string(kStorageFull));
   fail_with(code, name_, e.what());
@@ -124,7 +124,9 @@ void SqliteDatabase::check(bool indices) const {
 void SqliteDatabase::copy_to(const std::filesystem::path& to) const {
   SqliteDatabase copy(to);
   copy.call([&](SQLite::Database& sqlite) {
-    SQLite::Backup(sqlite, *sqlite_).executeStep();  // all in one read transaction
+    SQLite::Backup backup(sqlite, *sqlite_);
+    const int result = backup.executeStep();  // all in one read transaction
+    if (result != SQLITE_DONE) throw SQLite::Exception(sqlite3_errstr(result), result);
   });
   copy.run("PRAGMA journal_mode = DELETE");
 }

@@ -39,11 +39,21 @@ void send_asset(Conversation& worker, const asset::Input& input) {
   for (const auto& [uri, bytes] : input.buffers) worker.send(FrameKind::buffer, uri, bytes);
 }
 
+/// Whether the options have lists, other than of lambdas: of vertices, edges or islands, by which
+/// somebody else's job on a mesh that all know could reach the next one.
+bool has_lists(const api::Json& options) {
+  for (const auto& [name, value] : options.items())
+    if (value.is_array() && !value.empty() && name != "lambda") return true;
+  return false;
+}
+
 /// The mesh of a job and its owner, whose further jobs the same process may do; empty for none. Of
-/// a mesh in several parts the name of one says too little.
+/// a mesh in several parts the name of one says too little; after a crash a job has a new process.
 std::string mesh_of(const JobTask& task, const asset::Input& input) {
-  if (!input.buffers.empty() || task.record.input.sha256.empty()) return {};
-  return task.record.owner + ' ' + task.record.input.sha256;
+  const store::JobRecord& job = task.record;
+  if (!input.buffers.empty() || job.input.sha256.empty()) return {};
+  if (job.process_ends > 0 || has_lists(job.options)) return {};
+  return job.owner + ' ' + job.input.sha256;
 }
 
 /// A worker process that has received the whole job by tell(): one that has done a job of this
@@ -65,9 +75,8 @@ std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::
   const auto tried = [&](std::optional<StartedWorker> waiting) -> std::unique_ptr<WorkerProcess> {
     try {
       if (waiting) return told(std::move(*waiting));
-    } catch (const WorkerCrashed&) {
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::internal) throw;
+    } catch (const std::exception&) {  // whatever it says before it has the job
+      if (stopping.stop.stop_requested()) throw;
     }
     return nullptr;
   };

@@ -73,8 +73,9 @@ constexpr std::array kRefused = {SCMP_SYS(openat), SCMP_SYS(open),     SCMP_SYS(
                                        "; run with --isolate=off, or on a kernel with seccomp.");
 }
 
-void limit(__rlimit_resource resource, std::int64_t value) {
-  const rlimit bound{static_cast<rlim_t>(value), static_cast<rlim_t>(value)};
+/// more: by which the hard limit is above it.
+void limit(__rlimit_resource resource, std::int64_t value, std::int64_t more = 0) {
+  const rlimit bound{static_cast<rlim_t>(value), static_cast<rlim_t>(value + more)};
   if (::setrlimit(resource, &bound) != 0) cannot("limit its resources");
 }
 
@@ -124,7 +125,7 @@ void enter_sandbox(const SandboxLimits& limits) {
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) cannot("die with its server");
   if (::close_range(kKeptDescriptors, ~0U, 0) != 0) cannot("close inherited files");
   limit(RLIMIT_AS, limits.memory_bytes);
-  limit(RLIMIT_CPU, limits.processor_seconds);
+  limit(RLIMIT_CPU, limits.processor_seconds, 1);  // SIGXCPU tells why, which SIGKILL does not
   limit(RLIMIT_NOFILE, kKeptDescriptors);
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CORE, 0);

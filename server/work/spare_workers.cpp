@@ -12,7 +12,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kWaitsForMesh{30};
-constexpr std::chrono::seconds kMostOfAJob{2};   // what takes longer holds much memory
+constexpr std::chrono::seconds kMostOfAJob{2};
+constexpr std::int64_t kMostHeld = std::int64_t{256} << 20;
 constexpr std::chrono::seconds kMostWorked{30};  // its processor time is bounded in all
 constexpr std::size_t kKnownMeshes = 256;
 constexpr std::chrono::hours kNoEnd{1};
@@ -45,9 +46,12 @@ std::optional<StartedWorker> SpareWorkers::take_back(const std::string& mesh) {
 
 void SpareWorkers::give_back(const std::string& mesh, StartedWorker worker, Clock::duration job) {
   worker.count(job);
+  const bool may_stay = worker.is_lasting() && job <= kMostOfAJob &&
+                        worker.worked() <= kMostWorked && worker.held_bytes() <= kMostHeld;
+  std::list<Returned> oldest;  // ends outside of the lock
   const std::lock_guard lock(mutex_);
-  if (!note_mesh(mesh) || job > kMostOfAJob || worker.worked() > kMostWorked) return;
-  if (returned_.size() == count_) return;
+  if (!note_mesh(mesh) || !may_stay || count_ == 0) return;
+  if (returned_.size() == count_) oldest.splice(oldest.begin(), returned_, returned_.begin());
   returned_.push_back({mesh, std::move(worker), Clock::now() + kWaitsForMesh});
   has_returned_ = true;
   wanted_.notify_one();
@@ -92,7 +96,9 @@ void SpareWorkers::keep(const std::stop_token& stop) {
 /// Errors are dropped: a job that finds no spare starts its own process and reports why that fails.
 std::optional<StartedWorker> SpareWorkers::started() const {
   try {
-    return start_();
+    std::optional<StartedWorker> worker = start_();
+    worker->set_lasting();
+    return worker;
   } catch (const std::exception&) {
     return std::nullopt;
   }

@@ -37,7 +37,8 @@ class SpareWorkers {
   /// One that has done a job of this mesh, and remembers what it has computed.
   [[nodiscard]] std::optional<StartedWorker> take_back(const std::string& mesh);
   /// Has a process that has done a job of a mesh wait for another one, for half a minute. It ends
-  /// where the mesh is new here, or was slow, or the process is old: most meshes are sent once.
+  /// where the mesh is new here (most are sent once), the job was slow, or the process is old,
+  /// large, or was started by another thread.
   void give_back(const std::string& mesh, StartedWorker worker,
                  std::chrono::steady_clock::duration job);
 

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <csignal>
+#include <fstream>
 #include <utility>
 
 #include "core/base/error.hpp"
@@ -90,11 +91,19 @@ StartedWorker::StartedWorker(const std::string& program, const SandboxLimits& li
 StartedWorker::StartedWorker(StartedWorker&& other) noexcept
     : socket_(std::exchange(other.socket_, -1)),
       process_(std::exchange(other.process_, -1)),
+      is_lasting_(other.is_lasting_),
       worked_(other.worked_) {}
 
 StartedWorker::~StartedWorker() {
   if (process_ > 0) end();
   if (socket_ >= 0) ::close(socket_);
+}
+
+std::int64_t StartedWorker::held_bytes() const {
+  std::ifstream statm("/proc/" + std::to_string(process_) + "/statm");
+  std::int64_t all = 0, resident = 0;
+  statm >> all >> resident;
+  return resident * ::sysconf(_SC_PAGESIZE);
 }
 
 int StartedWorker::end() {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "server/work/sandbox.hpp"
@@ -24,6 +25,13 @@ class StartedWorker {
   [[nodiscard]] int socket() const { return socket_; }
   [[nodiscard]] pid_t process() const { return process_; }
 
+  /// Whether the thread that has started it lives as long as the server.
+  [[nodiscard]] bool is_lasting() const { return is_lasting_; }
+  void set_lasting() { is_lasting_ = true; }
+
+  /// The memory that it holds, in bytes; 0 where that cannot be told.
+  [[nodiscard]] std::int64_t held_bytes() const;
+
   /// The time of the jobs that it has done.
   [[nodiscard]] std::chrono::steady_clock::duration worked() const { return worked_; }
   void count(std::chrono::steady_clock::duration job) { worked_ += job; }
@@ -34,6 +42,7 @@ class StartedWorker {
  private:
   int socket_ = -1;
   pid_t process_ = -1;
+  bool is_lasting_ = false;
   std::chrono::steady_clock::duration worked_{};
 };
 

@@ -37,9 +37,9 @@ function body(rings, seed) {
   return { positions, faces };
 }
 
-/** The bytes of a GLB with `count` meshes of 4 * rings * rings faces each, the rings in [least, most]. */
-export function scene(count, least = 8, most = 16) {
-  const json = { asset: { version: "2.0" }, scenes: [{ nodes: [] }], scene: 0, nodes: [], meshes: [], accessors: [], bufferViews: [], buffers: [] };
+/** The bytes of a GLB with `count` meshes of 4 * rings * rings faces each, the rings in [least, most]. generator: what makes it another file. */
+export function scene(count, least = 8, most = 16, generator = undefined) {
+  const json = { asset: { version: "2.0", generator }, scenes: [{ nodes: [] }], scene: 0, nodes: [], meshes: [], accessors: [], bufferViews: [], buffers: [] };
   const pieces = [];
   let bytes = 0;
   const accessor = (array, type, componentType, count, more = {}) => {

@@ -49,7 +49,7 @@ test('a process waits for each worker, with the bounds that its job will have', 
     const of = (what) => limits.match(new RegExp(`^${what} +(\\S+) +(\\S+)`, 'm')).slice(1).map(Number);
     const memory = 200_000_000 + (128 + 256 + 3 * 80) * kMegabyte;
     assert.deepEqual(of('Max address space'), [memory, memory]);
-    assert.deepEqual(of('Max cpu time'), [300, 300]);
+    assert.deepEqual(of('Max cpu time'), [300, 301]);
     assert.deepEqual(of('Max open files'), [3, 3]);
     assert.deepEqual(of('Max file size'), [0, 0]);
     assert.match(readFileSync(`/proc/${pid}/status`, 'utf8'), /^NoNewPrivs:\s+1$/m);
@@ -149,6 +149,20 @@ test('a process does all further jobs of a mesh that comes again, with the bytes
   const other = await manyJobs(t, ['--isolate=off', ...kFlags.slice(1)], many.body);
   for (let k = 0; k < 2; k++) await other.send();
   for (const result of results) assert.ok(result.equals(await other.result(await other.send())));
+});
+
+test('a job with lists has a process of its own, and one that a job has started does no other', async (t) => {
+  const many = await manyJobs(t);
+  const pin = encodeURIComponent(JSON.stringify([{vertex: 0, uv: [0, 0]}]));
+  for (let k = 0; k < 3; k++)
+    assert.equal((await many.send({}, `&preset=chart&guarantee=none&constraints=${pin}`)).state, 'succeeded');
+  for (let round = 0; round < 3; round++) {
+    const gone = await spares(many.own.pid, kWorkers);
+    for (const pid of gone) process.kill(Number(pid), 'SIGKILL');
+    while (!gone.every(hasEnded)) await sleep(5);
+    for (let k = 0; k < kWorkers; k++) await many.send();  // each starts its process itself
+  }
+  await spares(many.own.pid, kWorkers);
 });
 
 test('a process that has failed a job, or was stopped, does no other', async (t) => {
