@@ -70,3 +70,17 @@ test("a backup of a server that was killed, and one that is damaged", async (t) 
   assert.deepEqual([checked.status, readdirSync(place)], [3, ["b"]]);
   assert.match(run("--help").stdout, /unwrapd backup, restore, check and move/);
 });
+
+test("a backup for which there is no room says so, wherever it ends", async (t) => {
+  const [data, place] = [dataDirectory(t), dataDirectory(t)];
+  const server = await Server.start(data);
+  await server.finished(await server.submit(QUICK, 5));
+  await server.end("SIGTERM");
+  for (const blocks of [20, 60, 100]) { // of 1,024 bytes: the database has more of them
+    const words = [`ulimit -f ${blocks}; trap '' XFSZ; exec "$@"`, "sh", process.env.UNWRAPD, "backup", join(place, "b"), "--data", data];
+    const told = spawnSync("bash", ["-c", ...words], { encoding: "utf8", timeout: 60_000 });
+    assert.equal(told.status, 1);
+    assert.match(told.stderr, /disk is full/, `${blocks}: ${told.stderr}`);
+    assert.deepEqual(readdirSync(place), []);
+  }
+});
