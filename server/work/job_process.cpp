@@ -70,6 +70,8 @@ std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::
     conversation.await_ready();
     tell(conversation);
     conversation.send(FrameKind::begin, {}, {});
+    conversation
+        .await_ready();  // it has all: what was sent may lie in the socket of a dead process
     return worker;
   };
   const auto tried = [&](std::optional<StartedWorker> waiting) -> std::unique_ptr<WorkerProcess> {

@@ -210,6 +210,7 @@ void work(Crew& crew, const WorkerFunctions& functions) {
   std::optional<SolverCache> core;
   while (true) {
     const ReceivedJob job = receive_job(crew.stop.get_token());
+    send_frame(send_all, FrameKind::ready, {}, {});
     if (job.task.rendering) return draw(job, crew, functions);
     const std::int64_t memory = job.task.memory_bytes;
     if (!core)
