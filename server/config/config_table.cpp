@@ -83,8 +83,9 @@ ConfigRow isolate_row() {
   ConfigRow row = choice(
       {"isolate", "",
        "Run each job in its own process without files or network, so that a crash fails only that "
-       "job. --isolate=auto: where the kernel allows it; on: always, or the server does not start; "
-       "off: jobs run in the server, which can then cache work between jobs on the same mesh. "
+       "job; further jobs of one key on one mesh may follow in it. --isolate=auto: where the "
+       "kernel allows it; on: always, or the server does not start; "
+       "off: jobs run in the server, which can then cache work between all jobs on the same mesh. "
        "Default: auto"},
       Names<Isolate>{{"auto", Isolate::automatic}, {"on", Isolate::on}, {"off", Isolate::off}},
       &Config::isolate);

@@ -47,7 +47,8 @@ std::optional<StartedWorker> SpareWorkers::take_back(const std::string& mesh) {
 void SpareWorkers::give_back(const std::string& mesh, StartedWorker worker, Clock::duration job) {
   worker.count(job);
   const bool may_stay = worker.is_lasting() && job <= kMostOfAJob &&
-                        worker.worked() <= kMostWorked && worker.held_bytes() <= kMostHeld;
+                        worker.worked() <= kMostWorked &&
+                        worker.held_bytes().value_or(kMostHeld + 1) <= kMostHeld;
   std::list<Returned> oldest;  // ends outside of the lock
   const std::lock_guard lock(mutex_);
   if (!note_mesh(mesh) || !may_stay || count_ == 0) return;
@@ -67,9 +68,9 @@ bool SpareWorkers::note_mesh(const std::string& mesh) {
 
 /// Processes end outside of the lock: the kernel takes their memory back first.
 void SpareWorkers::end_late(std::unique_lock<std::mutex>& lock) {
-  std::vector<Returned> late;
-  for (; !returned_.empty() && returned_.front().until <= Clock::now(); returned_.pop_front())
-    late.push_back(std::move(returned_.front()));
+  std::list<Returned> late;
+  while (!returned_.empty() && returned_.front().until <= Clock::now())
+    late.splice(late.end(), returned_, returned_.begin());
   lock.unlock();
   late.clear();
   lock.lock();

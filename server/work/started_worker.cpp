@@ -99,10 +99,10 @@ StartedWorker::~StartedWorker() {
   if (socket_ >= 0) ::close(socket_);
 }
 
-std::int64_t StartedWorker::held_bytes() const {
+std::optional<std::int64_t> StartedWorker::held_bytes() const {
   std::ifstream statm("/proc/" + std::to_string(process_) + "/statm");
   std::int64_t all = 0, resident = 0;
-  statm >> all >> resident;
+  if (!(statm >> all >> resident)) return std::nullopt;
   return resident * ::sysconf(_SC_PAGESIZE);
 }
 

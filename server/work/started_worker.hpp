@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "server/work/sandbox.hpp"
@@ -29,8 +30,8 @@ class StartedWorker {
   [[nodiscard]] bool is_lasting() const { return is_lasting_; }
   void set_lasting() { is_lasting_ = true; }
 
-  /// The memory that it holds, in bytes; 0 where that cannot be told.
-  [[nodiscard]] std::int64_t held_bytes() const;
+  /// The memory that it holds, in bytes; none where that cannot be told.
+  [[nodiscard]] std::optional<std::int64_t> held_bytes() const;
 
   /// The time of the jobs that it has done.
   [[nodiscard]] std::chrono::steady_clock::duration worked() const { return worked_; }

@@ -1,7 +1,8 @@
 // What a process of its own costs a job (ADR 0037): two servers, one with --isolate=off, do the same
 // jobs in turns. Ratios of medians and of minima; processor time is that of a server with the
 // processes that it has started. A part of it is spent beside the job, on the start of the process for
-// the next. Nothing fails: machines are noisy.
+// the next. Then what a process spares that has done a job of the mesh before (ADR 0075). Nothing fails:
+// machines are noisy.
 //
 //   node isolation.mjs UNWRAPD OUT.json [REPETITIONS (20) [FILE.obj[,QUERY]...]]
 import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
@@ -89,12 +90,30 @@ function told(one, {off, on}) {
   ];
 }
 
+/** Maps for a slider of lambda: on meshes that nobody has sent, and on one that was sent before. */
+async function drafts(server) {
+  const times = {anew: [], again: []};
+  for (let job = -kWarm; job < Number(repetitions); job++)
+    for (const [kind, number] of [['anew', job], ['again', 'the same']]) {
+      const query = `preset=chart&method=hybrid&guarantee=none&stop.iterations=10&lambda=${(job + kWarm + 1) / 100}`;
+      const ms = await measured(server, {body: meshes.obj(100), query}, `draft ${number}`);
+      if (job >= 0) times[kind].push(ms);
+    }
+  const median = (kind) => quantile(times[kind], 0.5);
+  return [
+    figure('another lambda at 20,000 faces: mesh not seen before', round(median('anew')), 'ms'),
+    figure('another lambda at 20,000 faces: mesh seen before', round(median('again')), 'ms'),
+    figure('another lambda at 20,000 faces: ratio of medians', round(median('again') / median('anew'), 3), 'times'),
+  ];
+}
+
 const servers = {off: await startServer(binary, [...kFlags, '--isolate=off']),
                  on: await startServer(binary, [...kFlags, '--isolate=on'])};
 const figures = [];
 try {
   for (const one of files.length > 0 ? files.map(work) : works)
     figures.push(...told(one, await compared(servers, one)));
+  if (files.length === 0) figures.push(...await drafts(servers.on));
 } finally {
   await Promise.all(Object.values(servers).map((server) => server.stop()));
 }

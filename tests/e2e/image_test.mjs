@@ -68,7 +68,8 @@ async function until(what, condition) {
     const found = await condition().catch(() => undefined);
     if (found) return found;
   }
-  assert.fail(`${what}: awaited in vain\n${run("logs", name)}`);
+  const logs = spawnSync(engine, ["logs", name], { encoding: "utf8" });
+  assert.fail(`${what}: awaited in vain\n${logs.stdout}${logs.stderr}`);
 }
 
 async function submit(query, size) {

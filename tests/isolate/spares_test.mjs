@@ -10,7 +10,7 @@ import {setTimeout as sleep} from 'node:timers/promises';
 import {request} from '../contract/http.mjs';
 import * as meshes from '../contract/meshes.mjs';
 import {startServer, withServer} from '../contract/server.mjs';
-import {children, hasEnded, heldMemory, niceness, spares} from './processes.mjs';
+import {busyWorker, children, hasEnded, heldMemory, niceness, spares} from './processes.mjs';
 
 const kWorkers = 2;
 const kFlags = ['--isolate', '--workers', String(kWorkers), '--threads', '3', '--memory-limit', '200000000',
@@ -127,10 +127,17 @@ async function manyJobs(t, flags = kFlags, body = another()) {
   return {own, body, send, result};
 }
 
+/** No process of a server waits for another job of its mesh: one that does ends after half a minute, too. */
+async function nothingIsKept(pid) {
+  const begun = Date.now();
+  await spares(pid, kWorkers);
+  assert.ok(Date.now() - begun < 20_000, 'a process has waited for another job of its mesh');
+}
+
 /** Sends a mesh twice; resolves to the process that then waits for its third job: the oldest. */
 async function keptBy({own, send}, more) {
   await send(more);
-  await spares(own.pid, kWorkers);  // nothing waits for another job: most meshes are sent once
+  await nothingIsKept(own.pid);  // most meshes are sent once
   await send(more);
   return (await spares(own.pid, kWorkers + 1))[0];
 }
@@ -156,13 +163,46 @@ test('a job with lists has a process of its own, and one that a job has started 
   const pin = encodeURIComponent(JSON.stringify([{vertex: 0, uv: [0, 0]}]));
   for (let k = 0; k < 3; k++)
     assert.equal((await many.send({}, `&preset=chart&guarantee=none&constraints=${pin}`)).state, 'succeeded');
+  await nothingIsKept(many.own.pid);
   for (let round = 0; round < 3; round++) {
     const gone = await spares(many.own.pid, kWorkers);
     for (const pid of gone) process.kill(Number(pid), 'SIGKILL');
     while (!gone.every(hasEnded)) await sleep(5);
     for (let k = 0; k < kWorkers; k++) await many.send();  // each starts its process itself
   }
-  await spares(many.own.pid, kWorkers);
+  await nothingIsKept(many.own.pid);
+});
+
+test('a process does no other job where one was slow', async (t) => {
+  const many = await manyJobs(t, kFlags, meshes.obj(60));
+  for (let k = 0; k < 2; k++) {
+    const sent = many.send({}, '&preset=paper&stop.iterations=10000');
+    const worker = Number(await busyWorker(many.own.pid));
+    process.kill(worker, 'SIGSTOP');  // slow on any machine
+    await sleep(2100);
+    process.kill(worker, 'SIGCONT');
+    assert.equal((await sent).state, 'succeeded');
+  }
+  await nothingIsKept(many.own.pid);
+});
+
+test('what lies in the socket of a process that has not read it is not held against the job', async (t) => {
+  const many = await manyJobs(t);
+  const frozen = await spares(many.own.pid, kWorkers);
+  for (const pid of frozen) process.kill(Number(pid), 'SIGSTOP');
+  const sent = many.send();
+  while (!many.own.log().includes('"event":"job started"')) await sleep(5);
+  await sleep(500);  // all of it is sent
+  for (const pid of frozen) process.kill(Number(pid), 'SIGKILL');
+  assert.deepEqual([(await sent).state, (await sent).attempt], ['succeeded', 1]);
+  assert.doesNotMatch(many.own.log(), /a worker process ended/);
+});
+
+test('a process that runs out of processor time tells so, and is not tried again', async (t) => {
+  const many = await manyJobs(t, kFlags, meshes.obj(100));
+  const sent = many.send({}, '&preset=paper&stop.iterations=10000');
+  process.kill(Number(await busyWorker(many.own.pid)), 'SIGXCPU');
+  assert.deepEqual([(await sent).problem.code, (await sent).attempt], ['time_limit', 1]);
 });
 
 test('a process that has failed a job, or was stopped, does no other', async (t) => {
@@ -171,7 +211,7 @@ test('a process that has failed a job, or was stopped, does no other', async (t)
   const failed = await many.send({}, '&resolution=16&max_pages=1&texels_per_unit=1000');
   assert.equal(failed.problem.code, 'does_not_fit');
   while (!hasEnded(kept)) await sleep(5);
-  await spares(many.own.pid, kWorkers);
+  await nothingIsKept(many.own.pid);
 });
 
 test('no process does the jobs of another owner', async (t) => {
