@@ -70,8 +70,8 @@ std::unique_ptr<WorkerProcess> worker_on(const Isolation& isolation, const api::
     conversation.await_ready();
     tell(conversation);
     conversation.send(FrameKind::begin, {}, {});
-    conversation
-        .await_ready();  // it has all: what was sent may lie in the socket of a dead process
+    // It has all of it: what was sent may lie in the socket of a process that has ended.
+    conversation.await_ready();
     return worker;
   };
   const auto tried = [&](std::optional<StartedWorker> waiting) -> std::unique_ptr<WorkerProcess> {
@@ -152,7 +152,8 @@ std::shared_ptr<SpareWorkers> spare_workers(int count, const api::Limits& limits
 
 std::unique_ptr<WorkerProcess> worker_for(const JobTask& task, bool is_helper,
                                           const asset::Input& input, const api::Limits& limits,
-                                          const Isolation& isolation) {
+                                          const Isolation& isolation,
+                                          const std::string& mesh = {}) {
   const auto tell = [&](Conversation& conversation) {
     const std::chrono::duration<double, std::milli> elapsed =
         std::chrono::steady_clock::now() - task.began;
@@ -165,18 +166,17 @@ std::unique_ptr<WorkerProcess> worker_for(const JobTask& task, bool is_helper,
     conversation.send(FrameKind::task, {}, pack_task(shape, task.record));
     send_asset(conversation, input);
   };
-  return worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell,
-                   is_helper ? std::string() : mesh_of(task, input));
+  return worker_on(isolation, limits, {task.stop, isolation.grace, isolation.on_kill}, tell, mesh);
 }
 
 std::string run_job_isolated(const JobTask& task, const asset::Input& input, JobOutput& output,
                              const api::Limits& limits, const Isolation& isolation) {
   const auto begun = std::chrono::steady_clock::now();
-  const auto worker = worker_for(task, false, input, limits, isolation);
+  const std::string mesh = mesh_of(task, input);
+  const auto worker = worker_for(task, false, input, limits, isolation, mesh);
   const std::size_t maps = map_count(task.record);
   std::string format =
       Conversation(*worker, output, isolation.memory_bytes, maps, task.desk).listen();
-  const std::string mesh = mesh_of(task, input);
   if (!isolation.spares || mesh.empty()) return format;
   if (auto answered = worker->release())
     isolation.spares->give_back(mesh, std::move(*answered),
