@@ -4,7 +4,10 @@
 // A map is a list of corners, three for each triangle, in the order of the mesh's faces:
 // {at: [x, y, z], uv: [u, v]}. Corners count by the area of their triangle in space.
 
-/** The corners of an OBJ with texture coordinates whose faces are triangles. */
+/** A polygon's corners as those of a fan of triangles. */
+const fan = (corners) => corners.slice(2).flatMap((corner, k) => [corners[0], corners[k + 1], corner]);
+
+/** The corners of an OBJ with texture coordinates; its polygons are cut into triangles. */
 export function cornersOf(obj) {
   const [positions, uvs, corners] = [[], [], []];
   for (const line of obj.split("\n")) {
@@ -12,12 +15,27 @@ export function cornersOf(obj) {
     if (word === "v") positions.push(rest.slice(0, 3).map(Number));
     if (word === "vt") uvs.push(rest.slice(0, 2).map(Number));
     if (word !== "f") continue;
-    for (const corner of rest) {
-      const [v, t] = corner.split("/").map(Number);
-      corners.push({ at: positions[v - 1], uv: uvs[t - 1] });
-    }
+    const polygon = rest.map((corner) => corner.split("/").map(Number));
+    corners.push(...fan(polygon.map(([v, t]) => ({ at: positions[v - 1], uv: uvs[t - 1] }))));
   }
   return corners;
+}
+
+/** The chart of each triangle of cornersOf(), named by its first face: faces that share texture coordinates are of one chart. */
+export function chartsOf(obj) {
+  const faces = [...obj.matchAll(/^f (.*)$/gm)].map(([, face]) => face.trim().split(/\s+/).map((corner) => Number(corner.split("/")[1])));
+  const of = [];
+  const rootOf = (t) => {
+    while ((of[t] ?? t) !== t) t = of[t] = of[of[t]] ?? of[t];
+    return t;
+  };
+  for (const [a, ...others] of faces) for (const b of others) of[rootOf(b)] = rootOf(a);
+  const first = new Map();
+  return faces.flatMap((face, f) => {
+    const root = rootOf(face[0]);
+    if (!first.has(root)) first.set(root, f);
+    return Array(face.length - 2).fill(first.get(root));
+  });
 }
 
 /** Rotations that bring an axis of a mesh up, to +Y. */
@@ -109,6 +127,22 @@ export function placed({ turn, scale, middle }, uv) {
   const [x, y] = minus(uv, middle);
   const [c, s] = [scale * Math.cos(turn), scale * Math.sin(turn)];
   return [c * x - s * y, s * x + c * y];
+}
+
+/** The middles of squares of these sides, beside each other in rows, and the side of the square around (0, 0) that holds all. */
+export function cellsOf(sides) {
+  const across = Math.max(...sides, Math.sqrt(sides.reduce((sum, side) => sum + side * side, 0)));
+  const largestFirst = sides.map((_, k) => k).sort((a, b) => sides[b] - sides[a]);
+  const [middles, height] = [[], { row: 0, all: 0 }];
+  let x = 0;
+  for (const k of largestFirst) {
+    if (x > 0 && x + sides[k] > across * (1 + 1e-9)) [x, height.all, height.row] = [0, height.all + height.row, 0];
+    if (x === 0) height.row = sides[k];
+    middles[k] = [x + sides[k] / 2, height.all + sides[k] / 2];
+    x += sides[k];
+  }
+  const side = Math.max(across, height.all + height.row);
+  return { middles: middles.map(([a, b]) => [a - side / 2, side / 2 - b]), side };
 }
 
 /**

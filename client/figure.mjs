@@ -3,8 +3,9 @@
 //
 //   node figure.mjs SERVER UNWRAP MESH OUT.html [UP]
 //
-// Maps of one chart are drawn at one scale and turned to each other; what is up on the mesh is up on
-// ARAP's map. Several charts lie as they were packed. +Y is up, as in glTF; an OBJ says nothing of it
+// Charts are drawn at one scale and turned to ARAP's, on which what is up on the mesh is up; several lie
+// beside each other, each at one place in every map. A map with other charts than ARAP's lies as it was
+// packed. +Y is up, as in glTF; an OBJ says nothing of it
 // and may have another axis for UP: x, -x, -y, z or -z.
 //
 // The page is one file without scripts: pictures are part of it, nothing is fetched.
@@ -15,7 +16,7 @@ import { basename, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 
-import { alignedPlaces, cornersOf, raised } from "./align.mjs";
+import { alignedPlaces, cellsOf, chartsOf, cornersOf, raised } from "./align.mjs";
 
 /** Weights of Eq. (5) from almost conformal to almost rigid, for a mesh of area 1. In other units
  * they grow with the area, as the first term of Eq. (5) does: see inUnitsOf(). */
@@ -109,22 +110,71 @@ function inlined(layout, kind, label, box, content = layout.replace(/^.*?<svg [^
   return `<svg class="${kind}" role="img" aria-label="${escapeText(label)}" viewBox="${box.join(" ")}">${content}</svg>`;
 }
 
-/** The paths of a layout, V pointing up, at their place among the other maps. */
-export function drawing({ title, layout }, { turn, scale, middle }, side) {
-  const paths = layout.match(/<defs>.*?<\/defs>|<path [^>]*?(?:\/>|>.*?<\/path>)/gs) ?? [];
-  const degrees = (-turn * 180) / Math.PI; // V points down in an SVG
-  const place = `rotate(${degrees}) scale(${scale} ${-scale}) translate(${-middle[0]} ${-middle[1]}) scale(${1 / LAYOUT_UNITS})`;
-  const box = [-side / 2, -side / 2, side, side].map((x) => 1.04 * x);
-  return inlined(layout, "layout", `${title}, flat`, box, `<g transform="${place}">${paths.join("")}</g>`);
+const CELL = 64; // units of the layout
+const AROUND = [-1, 0, 1].flatMap((x) => [-1, 0, 1].map((y) => [x, y])).sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
+
+/** A function from a point of the layout to the chart whose corners are near. */
+function chartFinder({ corners, charts }) {
+  const cells = new Map();
+  const near = (x, y) => `${Math.round(x / CELL)} ${Math.round(y / CELL)}`;
+  corners.forEach(({ uv }, k) => {
+    const [x, y] = uv.map((c) => c * LAYOUT_UNITS);
+    const cell = near(x, y);
+    cells.set(cell, [...(cells.get(cell) ?? []), [x, y, charts[Math.floor(k / 3)]]]);
+  });
+  return (x, y) => {
+    const close = AROUND.flatMap(([a, b]) => cells.get(near(x + CELL * a, y + CELL * b)) ?? []);
+    const nearest = close.reduce((best, point) => {
+      const distance = Math.hypot(point[0] - x, point[1] - y);
+      return distance < best.distance ? { distance, chart: point[2] } : best;
+    }, { distance: Infinity, chart: charts[0] });
+    return nearest.chart;
+  };
 }
 
-/** Draws maps of one chart beside each other, turned to ARAP's or to the first. */
+/** The paths of a layout, those of each chart in an SVG of its own. */
+function pathsByChart(map) {
+  const paths = map.layout.match(/<defs>.*?<\/defs>|<path [^>]*?(?:\/>|>.*?<\/path>)/gs) ?? [];
+  const names = [...new Set(map.charts)];
+  if (names.length === 1) return [paths.join("")];
+  const chartAt = chartFinder(map);
+  const parts = new Map(names.map((name) => [name, []]));
+  for (const path of paths) {
+    const [, head, data, tail] = path.match(/^(<path .*?d=")([^"]*)(".*)$/s) ?? [];
+    const pieces = new Map();
+    for (const piece of data?.match(/M[^M]*/g) ?? []) {
+      const chart = chartAt(...piece.match(/-?\d+/g).slice(0, 2).map(Number));
+      pieces.set(chart, (pieces.get(chart) ?? "") + piece);
+    }
+    for (const [chart, own] of pieces) parts.get(chart).push(head + own + tail);
+  }
+  const defs = paths.filter((path) => path.startsWith("<defs>"));
+  return names.map((name) => [...defs, ...parts.get(name)].join(""));
+}
+
+/** A map whose charts have these places around these middles, V pointing up. */
+function drawing(map, places, { middles, side }) {
+  const parts = pathsByChart(map).map((paths, k) => {
+    const { turn, scale, middle } = places[k];
+    const degrees = (-turn * 180) / Math.PI; // V points down in an SVG
+    const [x, y] = middles[k];
+    const move = middles.length > 1 ? `translate(${x} ${-y}) ` : "";
+    return `<g transform="${move}rotate(${degrees}) scale(${scale} ${-scale}) translate(${-middle[0]} ${-middle[1]}) scale(${1 / LAYOUT_UNITS})">${paths}</g>`;
+  });
+  const box = [-side / 2, -side / 2, side, side].map((x) => 1.04 * x);
+  return inlined(map.layout, "layout", `${map.title}, flat`, box, parts.join(""));
+}
+
+/** Draws maps with the same charts as ARAP's, or as the first map's, each chart turned to its like and at one place in all. */
 export function align(maps) {
-  const single = maps.filter((map) => map.corners && map.report.charts.length === 1);
-  if (single.length === 0) return;
-  const first = Math.max(0, single.findIndex((map) => map.title.startsWith("ARAP")));
-  const { places, side } = alignedPlaces(single.map((map) => map.corners), first);
-  single.forEach((map, k) => (map.drawing = drawing(map, places[k], side)));
+  const made = maps.filter((map) => map.corners?.length > 0);
+  if (made.length === 0) return;
+  const first = made.find((map) => map.title.startsWith("ARAP")) ?? made[0];
+  const alike = made.filter(({ charts }) => charts.length === first.charts.length && charts.every((chart, t) => chart === first.charts[t]));
+  const cells = [...new Set(first.charts)].map((chart) =>
+    alignedPlaces(alike.map(({ corners, charts }) => corners.filter((_, k) => charts[Math.floor(k / 3)] === chart)), alike.indexOf(first)));
+  const shared = cells.length > 1 ? cellsOf(cells.map(({ side }) => 1.04 * side)) : { middles: [[0, 0]], side: cells[0].side };
+  alike.forEach((map, m) => (map.drawing = drawing(map, cells.map(({ places }) => places[m]), shared)));
 }
 
 /** The page, whole. rows: maps as plan() gives them, each with report, layout and preview or with
@@ -142,8 +192,8 @@ export function page(name, rows) {
 <h1>${escapeText(name)}${faces}</h1>
 <p>Effect of λ in the hybrid energy (5), the mesh scaled to area 1, compared with other methods. Numbers in brackets: angular
 and area distortion, [D<sub>angle</sub>, D<sub>area</sub>]; both are at best 2. Each map is shown as
-a checkerboard on the mesh and flat, coloured by stretch. Maps of one chart have one scale and are
-turned to each other.</p>
+a checkerboard on the mesh and flat, coloured by stretch. Charts have one scale, and each has one place
+and direction in all maps that have it.</p>
 ${sections}
 ${bar}
 </body></html>
@@ -165,6 +215,7 @@ async function solve({ title, options }, { unwrap, server, mesh, folder, area })
   }
   const text = (file) => readFileSync(at(file), "utf8");
   return { title, report: JSON.parse(text("report.json")), corners: cornersOf(text("result.obj")),
+           charts: chartsOf(text("result.obj")),
            layout: text("layout.svg"), preview: readFileSync(at("preview.png")).toString("base64") };
 }
 

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { alignedPlaces, cornersOf, placed, raised, scaleOf, turnTo, turnUpright } from "../../client/align.mjs";
+import { alignedPlaces, cellsOf, chartsOf, cornersOf, placed, raised, scaleOf, turnTo, turnUpright } from "../../client/align.mjs";
 
 /** Repeatable numbers in [0, 1). */
 function numbers(seed) {
@@ -127,6 +127,29 @@ test("corners are read from an OBJ", () => {
   const corners = cornersOf(obj);
   assert.deepEqual(corners[0], { at: [0, 0, 0], uv: [0.5, 0.25] });
   assert.deepEqual(corners.map(({ at }) => at.join()), ["0,0,0", "1,0,0", "0,1,0", "0,1,0", "1,0,0", "0,0,0"]);
+  const polygon = cornersOf(`${obj}v 1 1 0\nf 1/1 2/2 4/3 3/3\n`).slice(6);
+  assert.deepEqual(polygon.map(({ at }) => at.join()), ["0,0,0", "1,0,0", "1,1,0", "0,0,0", "1,1,0", "0,1,0"], "a polygon is a fan");
+});
+
+test("triangles that share texture coordinates are of one chart, named by its first", () => {
+  const faces = [[1, 2, 3], [4, 5, 6], [2, 3, 7], [8, 9, 10], [6, 5, 11], [10, 12, 7], [13, 14, 15]];
+  const obj = faces.map((face) => `f ${face.map((t) => `9/${t}/1`).join(" ")}`).join("\n");
+  assert.deepEqual(chartsOf(obj), [0, 1, 0, 0, 1, 0, 6]);
+  assert.deepEqual(chartsOf("f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7\nf 1/4 2/2 8/8"), [0, 0, 1, 0], "a polygon has several triangles");
+});
+
+test("squares lie beside each other in a square that is little larger than they are", () => {
+  for (let k = 1; k < 40; k += 1) {
+    const next = numbers(k);
+    const sides = Array.from({ length: 1 + (k % 13) }, () => 0.1 + next());
+    const { middles, side } = cellsOf(sides);
+    middles.forEach(([x, y], i) => {
+      for (const c of [x, y]) assert.ok(Math.abs(c) + sides[i] / 2 < side / 2 + 1e-9, "none lies beyond");
+      middles.slice(0, i).forEach(([u, v], j) =>
+        assert.ok(Math.max(Math.abs(u - x), Math.abs(v - y)) > (sides[i] + sides[j]) / 2 - 1e-9, `${i} lies on ${j}`));
+    });
+    assert.ok(side * side < 3 * sides.reduce((sum, s) => sum + s * s, 0) + 1e-9, `${sides}`);
+  }
 });
 
 test("any axis of an OBJ is brought up by a rotation", () => {

@@ -38,11 +38,11 @@ function dome(n, across) {
   return `${lines.join("\n")}\n`;
 }
 
-async function makePage() {
-  writeFileSync(at("dome.obj"), dome(12, 1000));
+async function makePage(name, obj) {
+  writeFileSync(at(`${name}.obj`), obj);
   const { stdout } = await run("node",
-    [figure, server.base, join(bin, "unwrap"), at("dome.obj"), at("dome.html")]);
-  return { said: stdout, html: readFileSync(at("dome.html"), "utf8") };
+    [figure, server.base, join(bin, "unwrap"), at(`${name}.obj`), at(`${name}.html`)]);
+  return { said: stdout, html: readFileSync(at(`${name}.html`), "utf8") };
 }
 
 const all = (text, pattern) => [...text.matchAll(pattern)].map((match) => match[1]);
@@ -58,7 +58,7 @@ function figuresOf(html, title) {
 
 before(async () => {
   server = await startServer(join(bin, "unwrapd"), ["--workers", "1"]);
-  page = await makePage();
+  page = await makePage("dome", dome(12, 1000));
 });
 
 after(async () => {
@@ -95,27 +95,56 @@ test("the page needs nothing but itself: pictures are whole, and nothing is link
 
 /** The corners of the triangles of a drawing, as its transform puts them; y points down. */
 function pointsOf(drawing) {
-  const [, degrees, scale, x, y, unit] = drawing.match(
-    /rotate\((\S+)\) scale\((\S+) -\S+\) translate\((\S+) (\S+)\) scale\((\S+)\)/).map(Number);
+  const [, left = 0, top = 0, degrees, scale, x, y, unit] = drawing.match(
+    /"(?:translate\((\S+) (\S+)\) )?rotate\((\S+)\) scale\((\S+) -\S+\) translate\((\S+) (\S+)\) scale\((\S+)\)/).map((text) => Number(text ?? 0));
   const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
   return all(drawing, /M(-?\d+[ -]\d*)l/g).map((pair) => {
     const [a, b] = pair.match(/-?\d+/g).map(Number);
     const [p, q] = [scale * (a * unit + x), -scale * (b * unit + y)];
-    return [c * p - s * q, s * p + c * q];
+    return [left + c * p - s * q, top + s * p + c * q];
   });
 }
+
+const boxOf = (points) => [0, 1].flatMap((k) => [Math.min, Math.max].map((of) => of(...points.map((p) => p[k]))));
 
 test("maps lie on each other: each is about as wide and as high as ARAP's, around one middle", () => {
   const boxes = all(page.html, DRAWINGS).map((drawing) => {
     const points = pointsOf(drawing);
     assert.ok(points.length > 200);
-    return [0, 1].flatMap((k) => [Math.min, Math.max].map((of) => of(...points.map((p) => p[k]))));
+    return boxOf(points);
   });
   const arap = boxes[TITLES.findIndex((title) => title.startsWith("ARAP"))];
   const size = arap[1] - arap[0];
   boxes.forEach((own, k) => own.forEach((side, i) =>
     assert.ok(Math.abs(side - arap[i]) < 0.25 * size, `${TITLES[k]}: ${own} beside ${arap}`)));
   assert.equal(new Set(all(page.html, /<svg class="layout" [^>]*viewBox="([^"]+)"/g)).size, 1, "one scale");
+});
+
+/** An OBJ with other OBJs beside each other. */
+function beside(...objs) {
+  let before = 0;
+  return objs.map((obj, k) => {
+    const lines = obj.replace(/^v (\S+)/gm, (_, x) => `v ${Number(x) + 2000 * k}`).replace(/^f .*$/gm, (face) => face.replace(/\d+/g, (v) => Number(v) + before));
+    before += obj.match(/^v /gm).length;
+    return lines;
+  }).join("");
+}
+
+test("each of several charts has one place and one direction in all maps, and none lies on another", async () => {
+  const { html } = await makePage("three", beside(dome(8, 1000), dome(4, 300), dome(6, 600)));
+  const drawings = all(html, DRAWINGS).map((drawing) => all(drawing, /(<g transform="[^"]+">.*?<\/g>)/gs).map(pointsOf));
+  assert.equal(drawings.length, TITLES.length);
+  const boxes = drawings.map((charts) => charts.map(boxOf));
+  assert.deepEqual(drawings[0].map((points) => points.length > 100), [true, false, false], "every triangle is with its own chart");
+  for (const charts of drawings) assert.deepEqual(charts.map((points) => points.length), drawings[0].map((points) => points.length));
+  for (const charts of boxes) {
+    charts.forEach((box, k) => {
+      const size = Math.max(boxes[0][k][1] - boxes[0][k][0], boxes[0][k][3] - boxes[0][k][2]);
+      box.forEach((side, i) => assert.ok(Math.abs(side - boxes[0][k][i]) < 0.25 * size, `${box} beside ${boxes[0][k]}`));
+      for (const other of charts.slice(0, k))
+        assert.ok([0, 2].some((i) => other[i + 1] < box[i] || box[i + 1] < other[i]), `${box} lies on ${other}`);
+    });
+  }
 });
 
 test("lambda walks from the conformal map to the rigid one, whatever the mesh's units", () => {
