@@ -67,6 +67,7 @@ const benches = [
   ['cancel-latency', ['cancel-latency', 'noisy:5000', 'disk:100000', 'boxes:100'], 1],
   ['load', ['load', '20'], 9, () => ofFigures(Object.values(kept('load.json').figures).flat())],
   ['isolation', ['isolation', '10'], 1, () => ofFigures(kept('isolation.json').figures)],
+  ['frames', ['frames'], 1, () => ofFigures(kept('frames.json').figures)],
   ['store', ['store', '1000'], 1, ofStore],
   ['cost', ['cost', '1', file('closed/spot_control_mesh.obj')], 0.5],
   ['farm', ['farm', '100'], 1.5, ofFarm],

@@ -10,6 +10,7 @@ import {fileURLToPath} from 'node:url';
 import {promisify} from 'node:util';
 
 import * as meshes from '../contract/meshes.mjs';
+import {noChromium} from '../e2e/browsers.mjs';
 import {isInstalled} from '../postgres/postgres.mjs';
 
 const bin = process.env.UNWRAPD_BIN;
@@ -111,6 +112,12 @@ test('isolation', async () => {
   const out = join(scratch, 'isolation.json');
   await script('isolation', join(bin, 'unwrapd'), out, '1', sheet);
   for (const {name, value} of kept(out).figures) assert.equal(typeof value, 'number', name);
+});
+
+test('frames', {skip: noChromium}, async () => {
+  const out = join(scratch, 'frames.json');
+  await script('frames', join(bin, 'unwrapd'), out, '200');
+  assert.ok(kept(out).figures.every(({value}) => value >= 0));
 });
 
 test('defaults', async () => {

@@ -8,8 +8,8 @@ import {showProblem} from './app/problem.js';
 import {Packing} from './app/packing.js';
 import {Session} from './app/session.js';
 import {Viewing} from './app/viewing.js';
+import {Visits} from './app/visits.js';
 import {$} from './base/dom.js';
-import {placeOf} from './base/permalink.js';
 import {withoutExtension} from './base/words.js';
 import type {Opened} from './files/read.js';
 import {listJobs} from './job/list.js';
@@ -27,12 +27,16 @@ interface Limits {
 
 async function start(): Promise<void> {
   const viewing = new Viewing(showProblem);
-  const session = new Session(viewing);
+  const visits = new Visits();
+  const session = new Session(viewing, visits);
   const openMesh = (opened: Opened) => {
     session.open(opened);
     showMesh(opened, viewing).catch(showProblem);
   };
-  connectOpening(openMesh, showProblem);
+  connectOpening((opened) => {
+    visits.enterMesh(opened);
+    openMesh(opened);
+  }, showProblem);
   $('key').addEventListener('input', () => setKey($<HTMLInputElement>('key').value));
   const [methods, limits] = await Promise.all([getJson<Methods>('/v1/methods'), getJson<Limits>('/v1/limits')]);
   const form = new OptionsForm(methods);
@@ -86,10 +90,15 @@ async function start(): Promise<void> {
   connectSharing(() => session.job, showProblem);
   $('jobs').addEventListener('toggle', () => $<HTMLDetailsElement>('jobs').open && listJobs().catch(showProblem));
   const follow = () => {
-    const place = placeOf(location.hash);
-    if (place && place.job !== session.job?.id) void session.openJob(place.job, place.name);
+    const {opened, place} = visits.here;
+    if (place?.job === session.job?.id && opened === session.opened) return;
+    if (!opened) session.close();
+    else if (opened !== session.opened || !place) openMesh(opened);
+    [options, packed] = [undefined, undefined]; // of another job
+    balancing.reset();
+    if (place) void session.openJob(place.job, place.name);
   };
-  addEventListener('hashchange', follow);
+  addEventListener('popstate', follow);
   follow();
 }
 

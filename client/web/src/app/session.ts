@@ -1,7 +1,6 @@
 // One mesh and its jobs: what is open, what runs, what is shown.
 import {$, present, show} from '../base/dom.js';
 import {count} from '../base/words.js';
-import {hashOf} from '../base/permalink.js';
 import type {Opened} from '../files/read.js';
 import {ProgressView} from '../job/progress.js';
 import {type Job, type OptionValues, SentMesh, UnwrapdError, cancel, ended, hasEnded} from '../job/run.js';
@@ -14,6 +13,7 @@ import {type Loaded, loadAsset, loadResult, withSourcesOf} from '../result/load.
 import {showPictures} from '../result/pictures.js';
 import {clearProblem, showMessage, showProblem} from './problem.js';
 import type {Viewing} from './viewing.js';
+import type {Visits} from './visits.js';
 
 export class Session {
   opened: Opened | undefined;
@@ -26,13 +26,14 @@ export class Session {
   /** What was open is so no more: nothing that was made of it counts. */
   onClose?: () => void;
   readonly #viewing: Viewing;
+  readonly #visits: Visits;
   readonly #progress = new ProgressView();
   readonly #gallery = new LambdaGallery();
   #running: AbortController | undefined;
   #last: (signal: AbortSignal) => Promise<void> = async () => {};
 
-  constructor(viewing: Viewing) {
-    this.#viewing = viewing;
+  constructor(viewing: Viewing, visits: Visits) {
+    [this.#viewing, this.#visits] = [viewing, visits];
     $('cancel').addEventListener('click', () => void this.#cancel());
     $('retry').addEventListener('click', () => void this.#guarded(this.#last));
     $('key').addEventListener('keydown', ({key}) => key === 'Enter' && void this.#guarded(this.#last));
@@ -46,22 +47,21 @@ export class Session {
   }
 
   open(opened: Opened): void {
-    this.#close();
+    this.close();
     this.opened = opened;
     this.sent = new SentMesh(opened.blob, opened.mediaType, opened.name);
-    clearProblem();
-    show($('job'), false);
-    history.replaceState(null, '', location.pathname + location.search);
   }
 
   /** What is open is left. A job of it that runs goes on at the server. */
-  #close(): void {
+  close(): void {
     this.#abort();
     this.#running = undefined;
     this.#setBusy(false);
     this.opened = this.sent = this.loaded = this.kept = undefined;
     this.#leaveJob();
     this.#viewing.close();
+    for (const id of ['job', 'opened']) show($(id), false);
+    clearProblem();
     this.onClose?.();
   }
 
@@ -112,15 +112,16 @@ export class Session {
         this.take(end, {...packed, model: withSourcesOf(packed.model, loaded.model)}, undefined, kept.name);
         this.#progress.end('Packed again.');
       } finally {
-        if (this.kept === kept && !signal.aborted) this.#settle(kept.job, kept.name);
+        if (this.kept === kept && !signal.aborted) {
+          this.job = kept.job;
+          this.#visits.changeJob({job: kept.job.id, name: kept.name});
+        }
       }
     });
   }
 
-  /** Shows a job by its address, whatever its state. It may be of another mesh than the one that is open. */
+  /** Shows a job by its address, whatever its state. Without a mesh that is open it shows the result alone. */
   async openJob(id: string, name: string): Promise<void> {
-    this.#close();
-    show($('opened'), false);
     await this.#guarded(async (signal) => {
       this.#leaveJob();
       this.#progress.begin('Asking for the job…');
@@ -129,15 +130,11 @@ export class Session {
     });
   }
 
-  /** The job that the page is about. */
-  #settle(job: Job, name: string): void {
-    this.job = job;
-    history.replaceState(null, '', hashOf({job: job.id, name}));
-  }
 
   /** A job that has succeeded; undefined where it was cancelled, which is told. */
   async #end(job: Job, name: string, signal: AbortSignal): Promise<Job | undefined> {
-    this.#settle(job, name);
+    this.job = job;
+    this.#visits.enterJob({job: job.id, name});
     const end = await ended(job, {signal, onProgress: (progress) => this.#progress.on(progress)});
     if (end.state === 'cancelled') return void this.#tellCancelled();
     if (end.problem) throw new UnwrapdError(end.problem);
@@ -166,7 +163,7 @@ export class Session {
   /** Shows a result. live: what is on the page changes in place; a draft has no address and no files. */
   take(job: Job, loaded: Loaded, lambda: number | undefined, name: string, kind: 'whole' | 'live' | 'draft' = 'whole'): void {
     const {report, model} = loaded;
-    if (kind === 'live') history.replaceState(null, '', hashOf({job: job.id, name}));
+    if (kind === 'live') this.#visits.changeJob({job: job.id, name});
     if (kind !== 'whole') {
       show($('lambda-row'), false);
       this.#gallery.hide();

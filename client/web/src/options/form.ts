@@ -2,7 +2,7 @@
 // the chosen preset sets, and gives what differs from that.
 import {$, el} from '../base/dom.js';
 import {lambdaOfText} from './lambda.js';
-import {FIRST, VALUES, labelOf} from './names.js';
+import {FIRST, labelOf, wordsOf} from './names.js';
 import type {Methods, Option} from './types.js';
 
 type Input = HTMLInputElement | HTMLSelectElement;
@@ -17,7 +17,7 @@ function inputOf(option: Option): Input {
   const common = {name, id: idOf(name)};
   if (option.enum && !option.words) {
     const select = el('select', common);
-    for (const value of option.enum) select.add(new Option(VALUES[name]?.[value] ?? value, value));
+    for (const value of option.enum) select.add(new Option(wordsOf(name, value), value));
     return select;
   }
   if (option.type === 'boolean') return el('input', {...common, type: 'checkbox'});

@@ -17,7 +17,7 @@ const NAMES: Record<string, string> = {
 const UNITS: Record<string, string> = {resolution: 'texels', width: 'texels', height: 'texels', padding: 'texels', draco_bits: 'bits'};
 
 /** Words for values that are names of the API. */
-export const VALUES: Record<string, Record<string, string>> = {
+const VALUES: Record<string, Record<string, string>> = {
   effort: {fast: 'Fast', balanced: 'Balanced', best: 'Best'},
   guarantee: {none: 'None: the raw map', flip_free: 'No flipped triangle', bijective: 'No flip, no overlap'},
   boundary: {free: 'Free', circle: 'Circle', square: 'Square'},
@@ -35,6 +35,12 @@ export const VALUES: Record<string, Record<string, string>> = {
   repair: {untangle: 'Turn flipped triangles back', virtual_boundary: 'By a virtual boundary, as in the paper'},
   compression: {keep: 'As the input', none: 'None', draco: 'Draco', meshopt: 'meshopt'},
 };
+
+/** A value in words, with the API's name where that is another: help texts use it. */
+export function wordsOf(name: string, value: string): string {
+  const words = VALUES[name]?.[value];
+  return !words || words.toLowerCase() === value ? (words ?? value) : `${words} (${value})`;
+}
 
 /** The options that stand before the others. */
 export const FIRST = ['method', 'max_distortion', 'effort', 'resolution', 'padding'];

@@ -2,7 +2,7 @@
 // wheel, pinch or + and -.
 import {DoubleSide, LineBasicMaterial, LineSegments, BufferAttribute, BufferGeometry, MeshBasicMaterial, OrthographicCamera} from 'three';
 
-import {faceAround} from './pick.js';
+import {boxesOf, faceAround} from './pick.js';
 import {Stage, type Theme} from './stage.js';
 
 const MARGIN = 1.06;
@@ -27,6 +27,7 @@ export class FlatView extends Stage {
   readonly #frame = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   readonly #pointers = new Map<number, PointerEvent>();
   #uv: Float32Array | undefined;
+  #boxes: Float32Array = new Float32Array();
   #aspect = 1;
   #pages = 1;
   #middle = [0.5, 0.5];
@@ -47,6 +48,7 @@ export class FlatView extends Stage {
   show(uv: Float32Array | undefined, aspect: number, pages: number): void {
     const isOther = this.#aspect !== aspect || this.#pages !== pages || !this.#uv;
     [this.#uv, this.#aspect, this.#pages] = [uv, aspect, pages];
+    this.#boxes = boxesOf(uv ?? new Float32Array(), 2);
     this.setTriangles(flat(uv ?? [], aspect), undefined, uv);
     const corners = Array.from({length: pages}, (_, p) => [p, 0, p + 1, 0, p + 1, 0, p + 1, 1, p + 1, 1, p, 1, p, 1, p, 0]).flat();
     this.#frame.geometry.dispose();
@@ -87,7 +89,7 @@ export class FlatView extends Stage {
   }
 
   hit(event?: {clientX: number; clientY: number}): number {
-    return this.#uv ? faceAround(this.#uv, ...this.uvAt(event)) : -1;
+    return this.#uv ? faceAround(this.#uv, this.#boxes, ...this.uvAt(event)) : -1;
   }
 
   #zoom(by: number, event?: {clientX: number; clientY: number}): void {

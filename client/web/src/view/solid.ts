@@ -4,7 +4,7 @@ import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 
 import type {Surface} from '../mesh/surface.js';
 import {normalsOf} from './normals.js';
-import {faceAlong} from './pick.js';
+import {boxesOf, faceAlong} from './pick.js';
 import {Stage} from './stage.js';
 
 const STEP = Math.PI / 16;
@@ -34,6 +34,7 @@ export class SolidView extends Stage {
   readonly #controls: OrbitControls;
   readonly #lamp = new DirectionalLight(0xffffff, 2.2);
   #surface: Surface | undefined;
+  #boxes: Float32Array = new Float32Array();
   #normals: Float32Array | undefined;
   #home = {centre: new Vector3(), radius: 1};
 
@@ -51,7 +52,7 @@ export class SolidView extends Stage {
   show(surface: Surface, uv: Float32Array | undefined, keepsView = false): void {
     const isNew = this.#surface !== surface;
     this.#surface = surface;
-    if (isNew) this.#normals = normalsOf(surface);
+    if (isNew) [this.#normals, this.#boxes] = [normalsOf(surface), boxesOf(surface.positions, 3)];
     if (isNew || !uv) this.setTriangles(surface.positions, this.#normals, uv);
     else this.setUv(uv);
     if (isNew && !keepsView) {
@@ -84,7 +85,7 @@ export class SolidView extends Stage {
     const [x, y] = event ? this.at(event) : [0, 0];
     const origin = this.camera.position;
     const direction = new Vector3(x, y, 0.5).unproject(this.camera).sub(origin).normalize();
-    const {face, distance} = faceAlong(this.#surface.positions, origin.toArray(), direction.toArray());
+    const {face, distance} = faceAlong(this.#surface.positions, this.#boxes, origin.toArray(), direction.toArray());
     return face < 0 ? undefined : {face, point: origin.clone().addScaledVector(direction, distance).toArray()};
   }
 

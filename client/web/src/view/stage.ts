@@ -54,6 +54,7 @@ export abstract class Stage {
   readonly #mesh: Mesh<BufferGeometry, Material | Material[]>;
   #materials: (Material & {map: Texture | null})[] = [];
   #uv: Float32Array = new Float32Array();
+  #anyLocked = false;
   #asked = false;
   #size = '';
 
@@ -120,6 +121,7 @@ export abstract class Stage {
     const uv = geometry.getAttribute('uv') as BufferAttribute;
     uv.copyArray(skin && uv.count > 0 ? skin.uv : this.#uv);
     uv.needsUpdate = true;
+    this.#showLocked();
     this.draw();
   }
 
@@ -140,6 +142,13 @@ export abstract class Stage {
   /** Islands that stay where they are. */
   setLocked(triangles: Float32Array): void {
     this.#replace(this.#locked, triangles);
+    this.#anyLocked = triangles.length > 0;
+    this.#showLocked();
+  }
+
+  /** No tint lies over materials, whose colours it would change. */
+  #showLocked(): void {
+    this.#locked.visible = this.#anyLocked && !(this.isLit && this.#materials.length > 0);
   }
 
   setPicked(triangles: Float32Array): void {
