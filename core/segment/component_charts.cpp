@@ -147,7 +147,7 @@ class ComponentSearch {
       const SegmentationMesh surface = make_segmentation_mesh(component);
       return region_charts(component, segment(surface, rules, executor_));
     }
-    LargeCharts large = large_charts(component, rules, extent.second.faces, executor_);
+    LargeCharts large = large_charts(component, rules, extent.second, executor_);
     is_rough_ = is_rough_ || large.is_rough;
     return std::move(large.charts);
   }

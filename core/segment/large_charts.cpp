@@ -54,15 +54,19 @@ class Search {
                                    coarse_avoid(coarse_, component.mesh, component.halfedges))),
         steps_(excess_steps(rules.max_distortion)) {}
 
-  LargeCharts run() {
+  /// Measures what the small surface hides: whether that leaves room for the first of the steps.
+  bool has_room() {
+    const double excess = steps_.front();
     measure_hidden();
-    return {loosened(first()), is_rough_};
+    return steps_.front() == excess && !is_rough_;
   }
+
+  /// After has_room().
+  LargeCharts run() { return {loosened(first()), is_rough_}; }
 
   std::optional<std::vector<charts::Chart>> run_within_bound() {
     const double excess = steps_.front();
-    measure_hidden();
-    if (steps_.front() != excess || is_rough_) return std::nullopt;
+    if (!has_room()) return std::nullopt;
     Found found = first();
     if (misses(found, excess)) return std::nullopt;
     return loosened(std::move(found));
@@ -171,9 +175,12 @@ class Search {
 
 }  // namespace
 
-LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules, Index faces,
-                         Executor& executor) {
-  return Search(component, rules, faces, executor).run();
+LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules,
+                         const StandIn& small, Executor& executor) {
+  Search search(component, rules, small.faces, executor);
+  if (search.has_room() || small.finer == 0) return search.run();
+  Search finer(component, rules, small.finer, executor);
+  return finer.has_room() ? finer.run() : search.run();
 }
 
 std::optional<std::vector<charts::Chart>> large_charts_within_bound(const charts::Chart& component,

@@ -6,6 +6,7 @@
 
 #include "core/base/executor.hpp"
 #include "core/charts/charts.hpp"
+#include "core/segment/search_extent.hpp"
 #include "core/segment/segment.hpp"
 
 namespace unwrapd::segment {
@@ -15,10 +16,10 @@ struct LargeCharts {
   bool is_rough = false;  ///< noise leaves no room for the bound, which is then the small surface's
 };
 
-/// The component taken apart by segment(), on a surface of about `faces` faces. The same for any
-/// executor. Throws Error{cancelled}.
-LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules, Index faces,
-                         Executor& executor);
+/// The component taken apart by segment(), on a small surface. The same for any executor. Throws
+/// Error{cancelled}.
+LargeCharts large_charts(const charts::Chart& component, const SegmentRules& rules,
+                         const StandIn& small, Executor& executor);
 
 /// The same where the bound holds for the component itself, at the first of its steps
 /// (excess_steps()), so that no looser bound has another answer: else nothing.

@@ -12,6 +12,7 @@ namespace unwrapd::segment {
 struct StandIn {
   Index beyond = 0;  ///< for surfaces of more faces
   Index faces = 0;   ///< that it has
+  Index finer = 0;   ///< faces of another, where this one hides too much; 0: none
 };
 
 struct SearchExtent {

@@ -93,7 +93,7 @@ TEST(MaxDistortion, HasNoLongerSeamsOnLargeSurfacesEither) {
     segment::SegmentRules rules;
     rules.max_distortion = bound;
     const double border =
-        border_of(segment::large_charts(whole.charts.front(), rules, 12000, serial).charts);
+        border_of(segment::large_charts(whole.charts.front(), rules, {.faces = 12000}, serial).charts);
     EXPECT_LE(border, last * (1 + 1e-9)) << bound;
     last = border;
   }

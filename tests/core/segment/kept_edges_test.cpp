@@ -134,7 +134,7 @@ TEST(KeptEdges, OfALargeSurfaceAreKeptOnItsCoarseMesh) {
   SerialExecutor serial;
   const auto seams_with = [&](std::span<const SeamPath> kept) {
     const charts::Charts charts = charts::components_of(surface, {.kept = kept});
-    const LargeCharts large = large_charts(charts.charts.front(), {}, 600, serial);
+    const LargeCharts large = large_charts(charts.charts.front(), {}, {.faces = 600}, serial);
     std::set<Edge> seams;
     for (const charts::Chart& chart : large.charts)
       for (const BoundaryLoop& loop : chart.loops)

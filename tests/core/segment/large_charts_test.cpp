@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/segment/chart_excess.hpp"
 #include "core/unwrap.hpp"
@@ -45,13 +46,37 @@ TEST(LargeCharts, SaySoWhereNoiseLeavesNoRoomForTheBound) {
   EXPECT_EQ(notes_on_the_bound(report), 1);
 }
 
+/// A torus with so many waves around it, and half of them around its tube.
+TriMesh rippled_torus(Index around, Index along, double waves, double height) {
+  TriMesh mesh = torus(around, along);
+  for (Index k = 0; k < static_cast<Index>(mesh.positions.size()); ++k) {
+    Vec3& at = mesh.positions[static_cast<std::size_t>(k)];
+    const Vec3 middle = Vec3(at.x(), at.y(), 0).normalized();  // of the tube, with radius 1
+    const Vec3 out = at - middle;
+    const double u = std::atan2(at.y(), at.x()), v = std::atan2(at.z(), out.dot(middle));
+    at = middle + out * (1 + height * std::sin(waves * u) * std::sin(waves / 2 * v));
+  }
+  return mesh;
+}
+
+TEST(LargeCharts, KeepTheBoundWhereAVerySmallSurfaceHidesTooMuch) {
+  const std::vector<Surface> surfaces{surface_of(rippled_torus(160, 80, 36, .05))};
+  UnwrapOptions options;
+  options.effort = Effort::fast;
+  SerialExecutor serial;
+  const Report report = unwrap(surfaces, options, {}, serial).report;
+  EXPECT_LE(report.distortion.angle, kDefaultDistortion);
+  EXPECT_LE(report.distortion.area, kDefaultDistortion);
+  EXPECT_EQ(notes_on_the_bound(report), 0);
+}
+
 TEST(LargeCharts, AreTheSameForAnyExecutor) {
   const charts::Charts whole =
       charts::components_of(surface_of(bench::noisy_body(20'000, 0.25)), {});
   SerialExecutor serial;
   TwoThreads two;
-  const auto one = large_charts(whole.charts.front(), {}, 12000, serial).charts;
-  const auto other = large_charts(whole.charts.front(), {}, 12000, two).charts;
+  const auto one = large_charts(whole.charts.front(), {}, {.faces = 12000}, serial).charts;
+  const auto other = large_charts(whole.charts.front(), {}, {.faces = 12000}, two).charts;
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t k = 0; k < one.size(); ++k) {
     EXPECT_EQ(one[k].face_source, other[k].face_source);

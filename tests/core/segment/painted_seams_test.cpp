@@ -188,7 +188,7 @@ TEST(PaintedSeams, FollowTheCoarseMeshOfALargeSurface) {
   for (const Paint& paint : halves())
     for (const Surface& surface : {surface_of(tube), painted(tube, paint)}) {
       const charts::Charts charts = charts::components_of(surface, {});
-      const LargeCharts large = large_charts(charts.charts.front(), rules, 400, serial);
+      const LargeCharts large = large_charts(charts.charts.front(), rules, {.faces = 400}, serial);
       const double own = lengths_of(large.charts, surface, paint).painted;
       (surface.seam_avoid.empty() ? before : after) += own;
     }
