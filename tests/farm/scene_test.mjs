@@ -56,7 +56,7 @@ const leftOver = (farm) => Number(farm.query("SELECT (SELECT COUNT(*) FROM share
 
 /** Waits until a helper has begun a bundle, which it has not handed over: the node that helps. */
 async function helperAtWork(farm, job, nodes) {
-  for (const giveUp = Date.now() + 120_000; Date.now() < giveUp; await sleep(5)) {
+  for (const giveUp = Date.now() + 120_000; Date.now() < giveUp; await sleep(40)) {
     const owner = farm.query(`SELECT node FROM jobs WHERE id = '${job}' AND state = 'running'`);
     const begun = farm.query("SELECT COALESCE(SUM(from_back), 0) FROM shared_stages");
     if (owner && Number(begun) > 0) return nodes.find((node) => node.id !== owner);

@@ -83,9 +83,10 @@ export class Server {
     return (await fetch(`${this.url}/v1/jobs/${id}`)).json();
   }
 
-  /** The job, once it is as expected. */
+  /** The job, once it is as expected. The longer that takes, the less often it is asked for: to ask costs the job time. */
   async until(id, expected) {
-    for (const giveUp = Date.now() + 240_000; Date.now() < giveUp; await sleep(5)) {
+    const begin = Date.now();
+    for (; Date.now() < begin + 240_000; await sleep(Math.min(100, 5 + (Date.now() - begin) / 20))) {
       const job = await this.job(id);
       if (expected(job)) return job;
     }
