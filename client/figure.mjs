@@ -110,26 +110,33 @@ function inlined(layout, kind, label, box, content = layout.replace(/^.*?<svg [^
   return `<svg class="${kind}" role="img" aria-label="${escapeText(label)}" viewBox="${box.join(" ")}">${content}</svg>`;
 }
 
-const CELL = 64; // units of the layout
+const CELLS = [64, 1024, 16_384]; // units of the layout
 const AROUND = [-1, 0, 1].flatMap((x) => [-1, 0, 1].map((y) => [x, y])).sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
-/** A function from a point of the layout to the chart whose corners are near. */
-function chartFinder({ corners, charts }) {
+/** A function from a point of the layout to the chart whose corner is the nearest within a cell; else undefined. */
+function nearCorner({ corners, charts }, cell) {
   const cells = new Map();
-  const near = (x, y) => `${Math.round(x / CELL)} ${Math.round(y / CELL)}`;
+  const cellOf = (x, y) => `${Math.round(x / cell)} ${Math.round(y / cell)}`;
   corners.forEach(({ uv }, k) => {
     const [x, y] = uv.map((c) => c * LAYOUT_UNITS);
-    const cell = near(x, y);
-    cells.set(cell, [...(cells.get(cell) ?? []), [x, y, charts[Math.floor(k / 3)]]]);
+    const name = cellOf(x, y);
+    if (!cells.has(name)) cells.set(name, []);
+    cells.get(name).push([x, y, charts[Math.floor(k / 3)]]);
   });
   return (x, y) => {
-    const close = AROUND.flatMap(([a, b]) => cells.get(near(x + CELL * a, y + CELL * b)) ?? []);
+    const close = AROUND.flatMap(([a, b]) => cells.get(cellOf(x + cell * a, y + cell * b)) ?? []);
     const nearest = close.reduce((best, point) => {
       const distance = Math.hypot(point[0] - x, point[1] - y);
       return distance < best.distance ? { distance, chart: point[2] } : best;
-    }, { distance: Infinity, chart: charts[0] });
+    }, { distance: cell });
     return nearest.chart;
   };
+}
+
+/** The chart at a point of the layout. Triangles begin at corners; where two of a chart overlap, corners may be far. */
+export function chartFinder(map) {
+  const finders = CELLS.map((cell) => nearCorner(map, cell));
+  return (x, y) => finders.reduce((chart, find) => chart ?? find(x, y), undefined) ?? map.charts[0];
 }
 
 /** The paths of a layout, those of each chart in an SVG of its own. */

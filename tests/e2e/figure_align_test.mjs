@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { chartFinder } from "../../client/figure.mjs";
 import { alignedPlaces, cellsOf, chartsOf, cornersOf, placed, raised, scaleOf, turnTo, turnUpright } from "../../client/align.mjs";
 
 /** Repeatable numbers in [0, 1). */
@@ -149,6 +150,18 @@ test("squares lie beside each other in a square that is little larger than they 
         assert.ok(Math.max(Math.abs(u - x), Math.abs(v - y)) > (sides[i] + sides[j]) / 2 - 1e-9, `${i} lies on ${j}`));
     });
     assert.ok(side * side < 3 * sides.reduce((sum, s) => sum + s * s, 0) + 1e-9, `${sides}`);
+  }
+});
+
+test("a point of the layout is of the chart whose corner is the nearest", () => {
+  const next = numbers(5);
+  const corners = Array.from({ length: 600 }, () => ({ uv: [next(), next()] }));
+  const charts = Array.from({ length: 200 }, (_, t) => t % 7);
+  const chartAt = chartFinder({ corners, charts });
+  for (let k = 0; k < 300; k += 1) {
+    const at = [next(), next()].map((x) => Math.round(40_960 * x));
+    const distances = corners.map(({ uv }) => Math.hypot(uv[0] * 40_960 - at[0], uv[1] * 40_960 - at[1]));
+    assert.equal(chartAt(...at), charts[Math.floor(distances.indexOf(Math.min(...distances)) / 3)]);
   }
 });
 

@@ -74,6 +74,20 @@ describe("the page opens", { skip: missing }, () => {
     assert.ok(!page.url().includes("job="), "and its address");
   });
 
+  test("nothing in place of a mesh that is open, where text is dropped or a file is no mesh", async (t) => {
+    const page = await bench.visit(t);
+    await openMesh(page, bench.file("grid.obj", obj(3)));
+    await page.evaluate(() => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.setData("text/plain", "words");
+      document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true }));
+    });
+    await page.setInputFiles("#files", bench.file("words.obj", "hello"));
+    await page.locator("#problem").waitFor();
+    assert.equal(await page.locator("#mesh-name").innerText(), "grid.obj");
+    assert.equal(await page.locator("#opened").isVisible(), true);
+  });
+
   test("what is no mesh with words that help", async (t) => {
     const page = await bench.visit(t);
     await page.setInputFiles("#files", [bench.file("notes.txt", "hello")]);

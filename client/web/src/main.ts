@@ -4,9 +4,9 @@ import {Arranging} from './app/arranging.js';
 import {Balancing} from './app/balancing.js';
 import {Editing} from './app/editing.js';
 import {connectOpening, showMesh} from './app/opening.js';
-import {showProblem} from './app/problem.js';
+import {showMessage, showProblem} from './app/problem.js';
 import {Packing} from './app/packing.js';
-import {Session} from './app/session.js';
+import {type Asked, Session} from './app/session.js';
 import {Viewing} from './app/viewing.js';
 import {Visits} from './app/visits.js';
 import {$} from './base/dom.js';
@@ -43,15 +43,11 @@ async function start(): Promise<void> {
   const showBalance = (method: string) => ($('balance-row').hidden = method !== 'hybrid');
   form.onMethod = showBalance;
   showBalance(form.method);
-  let options: Record<string, unknown> | undefined;
-  let packed: string | undefined; // the file that options are for, where it is not the one that is open
   const balancing = new Balancing(session);
   const editing = new Editing(viewing, session);
   const again = (label: string, isDraft: boolean) => {
     try {
-      const wanted = {...form.chosen(), ...editing.keepingCharts(), ...editing.options(true)};
-      if (!isDraft) [options, packed] = [wanted, undefined];
-      balancing.ask(wanted, label, isDraft);
+      balancing.ask({...form.chosen(), ...editing.keepingCharts(), ...editing.options(true)}, label, isDraft);
     } catch (error) {
       showProblem(error);
     }
@@ -60,7 +56,6 @@ async function start(): Promise<void> {
   const arranging = new Arranging(viewing, session);
   const packing = new Packing(arranging, session, showProblem);
   packing.chosen = () => form.chosen();
-  packing.onPack = (wanted, file) => ([options, packed] = [wanted, file]);
   arranging.pages = () => form.pages;
   editing.islands = arranging;
   session.onClose = () => {
@@ -71,8 +66,7 @@ async function start(): Promise<void> {
   editing.onPins = () => again('Pins', false);
   const run = () => {
     try {
-      [options, packed] = [{...form.chosen(), ...editing.options()}, undefined];
-      void session.unwrap(options);
+      void session.unwrap({...form.chosen(), ...editing.options()});
     } catch (error) {
       showProblem(error);
     }
@@ -84,26 +78,31 @@ async function start(): Promise<void> {
   session.onResult = () => {
     editing.ready();
     packing.ready();
-    $('curl-row').hidden = !session.opened || !options;
-    if (session.opened && options) $<HTMLTextAreaElement>('curl').value = commandOf(session, options, packed, limits);
+    const asked = session.asked.get(session.job?.id ?? '');
+    $('curl-row').hidden = !session.opened || !asked;
+    if (session.opened && asked) $<HTMLTextAreaElement>('curl').value = commandOf(session, asked, limits);
   };
   connectSharing(() => session.job, showProblem);
   $('jobs').addEventListener('toggle', () => $<HTMLDetailsElement>('jobs').open && listJobs().catch(showProblem));
   const follow = () => {
-    const {opened, place} = visits.here;
-    if (place?.job === session.job?.id && opened === session.opened) return;
+    const visit = visits.arrive();
+    if (!visit) return;
+    const {opened, place, isForgotten} = visit;
     if (!opened) session.close();
     else if (opened !== session.opened || !place) openMesh(opened);
-    [options, packed] = [undefined, undefined]; // of another job
     balancing.reset();
+    if (isForgotten) showMessage('This mesh is not open any more', 'The page keeps the last few meshes only. Open it again.');
     if (place) void session.openJob(place.job, place.name);
   };
   addEventListener('popstate', follow);
+  $('skip').addEventListener('click', (event) => {
+    event.preventDefault(); // the address is the job's
+    $('main').focus();
+  });
   follow();
 }
 
-/** packed: the result that is packed again. */
-function commandOf({opened, kept}: Session, options: object, packed: string | undefined, {max_sync_faces: most}: Limits): string {
+function commandOf({opened, kept}: Session, {options, file: packed}: Asked, {max_sync_faces: most}: Limits): string {
   const isArchive = opened!.mediaType === 'application/zip' && !packed;
   const file = packed ?? opened!.name;
   const base = withoutExtension(file);

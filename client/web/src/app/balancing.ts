@@ -3,7 +3,7 @@
 import {$} from '../base/dom.js';
 import {fixed} from '../base/words.js';
 import {Latest} from '../edit/latest.js';
-import {type Job, type OptionValues, type SentMesh, UnwrapdError, cancel, ended} from '../job/run.js';
+import {type Job, type OptionValues, UnwrapdError, cancel, ended} from '../job/run.js';
 import {loadDraft, loadResult} from '../result/load.js';
 import type {Session} from './session.js';
 
@@ -30,6 +30,7 @@ function drawn(): Promise<void> {
 
 export class Balancing {
   readonly #session: Session;
+  #generation = 0;
   readonly #latest = new Latest<Wanted>((wanted) => this.#solve(wanted));
 
   constructor(session: Session) {
@@ -51,8 +52,9 @@ export class Balancing {
     this.#latest.ask({options: isDraft ? {...options, ...DRAFT, ...(this.#isLight ? PLAIN : {})} : options, label, isDraft, since: performance.now()});
   }
 
-  /** Another mesh: what was asked for of the last is not wanted any more. */
+  /** Another mesh or another job: what was asked for of the last is not wanted any more. */
   reset(): void {
+    this.#generation += 1;
     this.#latest.drop();
     $('live').textContent = '';
   }
@@ -60,26 +62,29 @@ export class Balancing {
   async #solve(wanted: Wanted): Promise<void> {
     const {sent} = this.#session;
     if (!sent) return;
+    const generation = this.#generation;
+    const isCurrent = () => generation === this.#generation && sent === this.#session.sent;
     try {
       const watcher = {signal: new AbortController().signal, wait: 10};
       const job = await sent.submit(wanted.options, watcher);
       try {
-        await this.#show(await ended(job, watcher), wanted, sent);
+        await this.#show(await ended(job, watcher), wanted, isCurrent);
       } finally {
         if (wanted.isDraft) cancel(job).catch(() => {}); // the next one need not wait for it
       }
     } catch (error) {
-      if (sent === this.#session.sent) $('live').textContent = `${wanted.label}: ${error instanceof UnwrapdError ? error.detail : String(error)}`;
+      if (isCurrent()) $('live').textContent = `${wanted.label}: ${error instanceof UnwrapdError ? error.detail : String(error)}`;
     }
   }
 
-  async #show(job: Job, {label, isDraft, since}: Wanted, sent: SentMesh): Promise<void> {
+  async #show(job: Job, {options, label, isDraft, since}: Wanted, isCurrent: () => boolean): Promise<void> {
     const {opened} = this.#session;
-    const isWanted = () => sent === this.#session.sent && !this.#session.isBusy; // nothing else was begun
+    const isWanted = () => isCurrent() && !this.#session.isBusy; // nothing else was begun
     if (job.problem) throw new UnwrapdError(job.problem);
     if (!isWanted()) return;
     const loaded = isDraft && this.#isLight ? await loadDraft(job) : await loadResult(job, undefined, opened!.model);
     if (!isWanted()) return;
+    if (!isDraft) this.#session.asked.set(job.id, {options});
     this.#session.take(job, loaded, undefined, opened!.name, isDraft ? 'draft' : 'live');
     const {angle, area} = loaded.report.distortion;
     await drawn();

@@ -21,17 +21,25 @@ export async function showMesh(opened: Opened, viewing: Viewing): Promise<void> 
 export function connectOpening(onOpen: (opened: Opened) => void, onError: (error: unknown) => void): void {
   const input = $<HTMLInputElement>('files');
   let latest = 0;
+  let wasShown = false; // a mesh, when the reading began
   const read = async (files: Named[] | Promise<Named[]>) => {
     const mine = (latest += 1);
+    wasShown ||= !$('opened').hidden;
     show($('opened'), false);
     announce('Reading the file…');
+    const end = (then: () => void) => {
+      if (mine !== latest) return;
+      show($('opened'), wasShown);
+      wasShown = false;
+      then();
+    };
     try {
       const all = await files;
-      if (all.length === 0) return;
+      if (all.length === 0) return end(() => {});
       const opened = await open(all);
-      if (mine === latest) onOpen(opened);
+      end(() => onOpen(opened));
     } catch (error) {
-      if (mine === latest) onError(error);
+      end(() => onError(error));
     }
   };
   input.addEventListener('change', () => {

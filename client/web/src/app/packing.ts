@@ -25,8 +25,6 @@ export class Packing {
   readonly #session: Session;
   /** What is chosen in the form. */
   chosen: () => OptionValues = () => ({});
-  /** The options of a packing whose result comes now, and the name of its file. */
-  onPack?: (options: OptionValues, file: string) => void;
   #staying: number[] = []; // in the result that comes
 
   constructor(arranging: Arranging, session: Session, onError: (error: unknown) => void) {
@@ -61,9 +59,6 @@ export class Packing {
     const {faces} = locks;
     const {file, name} = await fileOf(kept);
     if (kept !== this.#session.kept) return;
-    await this.#session.repack(file, options, () => {
-      this.#staying = faces;
-      this.onPack?.(options, name);
-    });
+    await this.#session.repack(file, options, name, () => (this.#staying = faces));
   }
 }

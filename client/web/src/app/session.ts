@@ -15,12 +15,20 @@ import {clearProblem, showMessage, showProblem} from './problem.js';
 import type {Viewing} from './viewing.js';
 import type {Visits} from './visits.js';
 
+/** file: what was sent, where that is another than the one that is open. */
+export interface Asked {
+  options: OptionValues;
+  file?: string;
+}
+
 export class Session {
   opened: Opened | undefined;
   sent: SentMesh | undefined;
   job: Job | undefined;
   loaded: Loaded | undefined;
   kept: Kept | undefined;
+  /** How jobs were asked for. */
+  readonly asked = new Map<string, Asked>();
   /** A result is shown. */
   onResult?: () => void;
   /** What was open is so no more: nothing that was made of it counts. */
@@ -89,12 +97,15 @@ export class Session {
       this.#progress.begin('Sending the mesh…');
       present($('job'));
       const job = await sent.submit(options, {onSent: (share) => this.#progress.sent(share), signal});
+      this.asked.set(job.id, {options});
+      signal.throwIfAborted();
+      this.#visits.enterJob({job: job.id, name: opened.name});
       await this.#follow(job, opened.name, signal);
     });
   }
 
   /** Packs the islands of the result that is shown again; file: of that result. Where that fails, all stays as it is. */
-  async repack(file: SentMesh, options: OptionValues, onPacked: () => void): Promise<void> {
+  async repack(file: SentMesh, options: OptionValues, packed: string, onPacked: () => void): Promise<void> {
     const {kept, loaded} = this;
     if (!kept || !loaded) return;
     await this.#guarded(async (signal) => {
@@ -102,20 +113,20 @@ export class Session {
       present($('job'));
       try {
         const job = await file.submit(options, {onSent: (share) => this.#progress.sent(share), signal});
-        const end = await this.#end(job, kept.name, signal);
-        const packed = end && await loadResult(end, undefined, this.opened?.model, signal);
+        const end = await this.#end(job, signal);
+        const result = end && await loadResult(end, undefined, this.opened?.model, signal);
         signal.throwIfAborted();
-        if (!packed) return;
+        if (!result) return;
         onPacked();
+        this.asked.set(job.id, {options, file: packed});
+        this.#visits.enterJob({job: job.id, name: kept.name});
         show($('lambda-row'), false);
         this.#gallery.hide();
-        this.take(end, {...packed, model: withSourcesOf(packed.model, loaded.model)}, undefined, kept.name);
+        this.take(end, {...result, model: withSourcesOf(result.model, loaded.model)}, undefined, kept.name);
+        show($('result'), true);
         this.#progress.end('Packed again.');
       } finally {
-        if (this.kept === kept && !signal.aborted) {
-          this.job = kept.job;
-          this.#visits.changeJob({job: kept.job.id, name: kept.name});
-        }
+        if (this.kept === kept && !signal.aborted) this.job = kept.job;
       }
     });
   }
@@ -126,15 +137,27 @@ export class Session {
       this.#leaveJob();
       this.#progress.begin('Asking for the job…');
       present($('job'));
-      await this.#follow(await getJson<Job>(`/v1/jobs/${id}`, signal), name, signal);
+      try {
+        await this.#follow(await getJson<Job>(`/v1/jobs/${id}`, signal), name, signal);
+      } finally {
+        if (this.kept?.job.id !== id && !signal.aborted) this.#leaveResult(); // of another job
+      }
     });
+  }
+
+  /** No result is shown, but the mesh if one is open. */
+  #leaveResult(): void {
+    this.loaded = this.kept = undefined;
+    this.onClose?.();
+    if (this.opened) this.#viewing.open(this.opened.model);
+    else this.#viewing.close();
   }
 
 
   /** A job that has succeeded; undefined where it was cancelled, which is told. */
-  async #end(job: Job, name: string, signal: AbortSignal): Promise<Job | undefined> {
+  async #end(job: Job, signal: AbortSignal): Promise<Job | undefined> {
+    signal.throwIfAborted();
     this.job = job;
-    this.#visits.enterJob({job: job.id, name});
     const end = await ended(job, {signal, onProgress: (progress) => this.#progress.on(progress)});
     if (end.state === 'cancelled') return void this.#tellCancelled();
     if (end.problem) throw new UnwrapdError(end.problem);
@@ -143,7 +166,7 @@ export class Session {
   }
 
   async #follow(job: Job, name: string, signal: AbortSignal): Promise<void> {
-    const end = await this.#end(job, name, signal);
+    const end = await this.#end(job, signal);
     if (!end) return;
     const lambdas = [end.options.lambda].flat().filter((lambda) => lambda !== null);
     $('lambda-shown').replaceChildren(...(lambdas.length > 1 ? lambdas : []).map((lambda) => new Option(String(lambda), String(lambda))));
@@ -206,7 +229,7 @@ export class Session {
 
   #tellCancelled(): void {
     show($('job'), false);
-    showMessage('Cancelled', 'The job was stopped, as you asked. The mesh and the options are still here.');
+    showMessage('Cancelled', `The job was stopped${this.opened ? ', as you asked. The mesh and the options are still here' : ''}.`);
   }
 
   /** Runs one thing at a time, with the buttons and messages that belong to it. */

@@ -53,6 +53,7 @@ export class ProgressView {
       $('chart-of').textContent = data.of > 1 ? `chart ${integer(data.chart + 1)} of ${integer(data.of)}` : '';
     } else if (event === 'iteration') {
       const {i, energy, angle, area, flipped, chart} = data;
+      if (!this.#stage) this.#stage = $('status').textContent = STAGES['solve']!; // it began before this page asked
       $('iteration').textContent = `Iteration ${i}: energy ${fixed(energy, 6)}, angles ${fixed(angle, 4)}, areas ${fixed(area, 4)}, ${integer(flipped)} flipped`;
       this.#curve.push({chart, i, energy});
       this.#drawSoon();
