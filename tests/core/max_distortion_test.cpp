@@ -92,8 +92,8 @@ TEST(MaxDistortion, HasNoLongerSeamsOnLargeSurfacesEither) {
   for (const double bound : {2.02, 2.03, 2.07}) {
     segment::SegmentRules rules;
     rules.max_distortion = bound;
-    const double border =
-        border_of(segment::large_charts(whole.charts.front(), rules, {.faces = 12000}, serial).charts);
+    const double border = border_of(
+        segment::large_charts(whole.charts.front(), rules, {.faces = 12000}, serial).charts);
     EXPECT_LE(border, last * (1 + 1e-9)) << bound;
     last = border;
   }
