@@ -14,20 +14,25 @@ async function shows(page, job) {
   await page.locator("#result").waitFor();
 }
 
+/** Unwraps a mesh twice, with other padding: both jobs. */
+async function twoJobs(page, file) {
+  await page.fill("[name=padding]", "5");
+  await unwrap(page, file);
+  const first = jobOf(page);
+  await page.fill("[name=padding]", "7");
+  await unwrap(page);
+  assert.notEqual(jobOf(page), first);
+  return [first, jobOf(page)];
+}
+
 describe("Back", { skip: missing }, () => {
   before(() => bench.open());
   after(() => bench.close());
 
   test("leads from a job to the one before, of the same mesh, and to the mesh itself", async (t) => {
     const page = await bench.visit(t);
-    await page.fill("[name=padding]", "5");
-    await unwrap(page, bench.file("cap.obj", cap()));
-    const first = jobOf(page);
-    await page.fill("[name=padding]", "7");
-    await unwrap(page);
-    const second = jobOf(page);
+    const [first, second] = await twoJobs(page, bench.file("cap.obj", cap()));
     assert.match(await page.inputValue("#curl"), /"padding":7/);
-    assert.notEqual(second, first);
     await page.goBack();
     await shows(page, first);
     assert.equal(await page.locator("#mesh-name").innerText(), "cap.obj");
@@ -67,10 +72,7 @@ describe("Back", { skip: missing }, () => {
 
   test("after a reload leads to the result, whose mesh is not open any more", async (t) => {
     const page = await bench.visit(t);
-    await unwrap(page, bench.file("cap.obj", cap()));
-    const first = jobOf(page);
-    await page.fill("[name=padding]", "7");
-    await unwrap(page);
+    const [first] = await twoJobs(page, bench.file("cap.obj", cap()));
     await page.reload();
     await page.locator("#result").waitFor();
     await page.goBack();
@@ -82,10 +84,7 @@ describe("Back", { skip: missing }, () => {
 
   test("twice at once leads two steps back, and both jobs stay ahead", async (t) => {
     const page = await bench.visit(t);
-    await unwrap(page, bench.file("cap.obj", cap()));
-    await page.fill("[name=padding]", "7");
-    await unwrap(page);
-    const second = jobOf(page);
+    const [, second] = await twoJobs(page, bench.file("cap.obj", cap()));
     const entries = await page.evaluate(() => history.length);
     await page.evaluate(() => new Promise((done) => {
       addEventListener("popstate", () => setTimeout(() => done(history.back())), { once: true });
@@ -117,10 +116,7 @@ describe("Back", { skip: missing }, () => {
   test("is not undone by what a slider asked for before", async (t) => {
     const page = await bench.visit(t);
     await page.selectOption("[name=method]", "hybrid");
-    await unwrap(page, bench.file("cap.obj", cap(60)));
-    const first = jobOf(page);
-    await page.fill("[name=padding]", "7");
-    await unwrap(page);
+    const [first] = await twoJobs(page, bench.file("cap.obj", cap(60)));
     await page.evaluate(() => {
       const slider = document.querySelector("#balance");
       slider.value = slider.max;
@@ -137,10 +133,7 @@ describe("Back", { skip: missing }, () => {
 
   test("to a job that is gone shows no result of another", async (t) => {
     const page = await bench.visit(t);
-    await unwrap(page, bench.file("cap.obj", cap()));
-    const first = jobOf(page);
-    await page.fill("[name=padding]", "7");
-    await unwrap(page);
+    const [first] = await twoJobs(page, bench.file("cap.obj", cap()));
     await fetch(`${bench.server.base}/v1/jobs/${first}`, { method: "DELETE" });
     await page.goBack();
     await page.locator("#problem", { hasText: "There is no such job here" }).waitFor();

@@ -180,6 +180,12 @@ describe("a job of the page", { skip: missing }, () => {
     await page.locator("#problem", { hasText: "There is no such job here" }).waitFor();
   });
 
+  test("whose address was cut off is said to be", async (t) => {
+    const page = await bench.visit(t, { hash: "#job=j_0123" });
+    await page.locator("#problem", { hasText: "This address names no job" }).waitFor();
+    assert.deepEqual(page.complaints, []);
+  });
+
   test("is in the list, which leads to it", async (t) => {
     const page = await bench.visit(t);
     await unwrap(page, bench.file("listed.obj", obj(5)));

@@ -10,6 +10,7 @@ import {type Asked, Session} from './app/session.js';
 import {Viewing} from './app/viewing.js';
 import {Visits} from './app/visits.js';
 import {$} from './base/dom.js';
+import {isBroken} from './base/permalink.js';
 import {withoutExtension} from './base/words.js';
 import type {Opened} from './files/read.js';
 import {listJobs} from './job/list.js';
@@ -85,6 +86,7 @@ async function start(): Promise<void> {
   connectSharing(() => session.job, showProblem);
   $('jobs').addEventListener('toggle', () => $<HTMLDetailsElement>('jobs').open && listJobs().catch(showProblem));
   const follow = () => {
+    if (isBroken(location.hash)) showMessage('This address names no job', 'The link may have been cut off. Ask for the whole of it.');
     const visit = visits.arrive();
     if (!visit) return;
     const {opened, place, isForgotten} = visit;

@@ -11,4 +11,7 @@ export function placeOf(hash: string): Place | undefined {
   return job && /^j_[0-9a-f]{32}$/.test(job) ? {job, name: words.get('name') ?? job} : undefined;
 }
 
+/** Whether an address wants to name a job, and does not. */
+export const isBroken = (hash: string) => hash.startsWith('#job') && !placeOf(hash);
+
 export const hashOf = ({job, name}: Place) => `#${new URLSearchParams({job, name})}`;
