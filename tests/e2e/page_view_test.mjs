@@ -207,6 +207,8 @@ describe("the views of the page", { skip: missing }, () => {
     await unwrap(page);
     assert.ok(await areSeen("#solid", 0.02), `after: ${await hues(page, "#solid")}`);
     assert.ok(await areSeen("#flat", 0.02), `after: ${await hues(page, "#flat")}`);
+    const [bare] = [await shot(page, "#solid"), await page.check("#edit-islands"), await page.click("#lock-all")];
+    assert.equal(await difference(page, await shot(page, "#solid"), bare), 0, "no tint of locked islands lies over materials");
     await page.check("#before");
     assert.ok(await areSeen("#solid", 0.02), `before again: ${await hues(page, "#solid")}`);
     await page.selectOption("#colouring", "plain");
