@@ -42,7 +42,7 @@ struct BottomLeftPlacer::Page {
 
 BottomLeftPlacer::BottomLeftPlacer(std::span<const charts::Outline> outlines, int turns,
                                    Rotation rotation)
-    : outlines_(outlines), turns_(allowed_turns(turns, rotation)) {
+    : outlines_(outlines), rotation_(rotation), turns_(allowed_turns(turns, rotation)) {
   boxes_.reserve(outlines.size());
   for (const charts::Outline& outline : outlines) boxes_.push_back(resting_box(outline, rotation));
   if (rotation != Rotation::any) return;
@@ -58,6 +58,13 @@ void BottomLeftPlacer::set_scale(double cells_per_unit, double padding) {
   scale_ = cells_per_unit;
   padding_ = padding;
   masks_.assign(outlines_.size() * static_cast<std::size_t>(turns_), std::nullopt);
+}
+
+int BottomLeftPlacer::refine_turns(int factor) {
+  if (rotation_ != Rotation::any) return 1;
+  turns_ *= factor;
+  set_scale(scale_, padding_);
+  return factor;
 }
 
 Turn BottomLeftPlacer::turn_of(std::size_t island, int turn) const {

@@ -70,6 +70,10 @@ class BottomLeftPlacer {
   /// cells_per_unit: the islands' scale; padding: cells. Drops masks of other values.
   void set_scale(double cells_per_unit, double padding);
 
+  /// So many times as many rotations in a full circle, where islands may turn freely: turn k of
+  /// before is turn factor * k now. Drops masks. Returns the factor.
+  int refine_turns(int factor);
+
   /// Places each island, in order, at the lowest free place over its rotations, then the leftmost,
   /// on the first page that has one. Stops at the first island that has no place. Throws
   /// Error{cancelled}.
@@ -93,6 +97,7 @@ class BottomLeftPlacer {
   bool lay_one(std::size_t island, int turn, std::vector<Page>& pages, CellPlace& spot);
 
   std::span<const charts::Outline> outlines_;
+  Rotation rotation_;
   int turns_;
   double scale_ = 0, padding_ = 0;
   std::vector<Box> boxes_;

@@ -33,7 +33,7 @@ struct Extent {
   double fine = 1;           ///< the same of those on the fine grids
   bool is_short = false;     ///< no grid between the first and the last
 };
-constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{6, 2, .1, .25}, Extent{6, 2, 1, 1}};
+constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{6, 2, .1, .25}, Extent{6, 4, 1, 1}};
 
 constexpr std::size_t kVeryFew = 3;  // islands that come to the same page from nearly any start
 
@@ -57,6 +57,7 @@ constexpr std::array kGrids = {Squeeze{{512, 8, 2, 3}, 8'000'000},
                                Squeeze{{1024, 8, 1, 3}, 8'000'000}};
 constexpr double kMostShares = 12;
 constexpr double kSidesAShare = 30;  // of outlines, for one share: small shapes need no long search
+constexpr int kFinerTurns = 4;       // for each of the coarse grid, on the fine ones
 constexpr double kSmaller = 0.9;     // scale factor after islands did not fit
 
 /// Islands on a page, and the placer that made their masks.
@@ -132,6 +133,7 @@ class FewPacker {
   }
 
   Attempt finish(Attempt tried) const {
+    turn_finely(tried);
     for (const Squeeze& grid :
          std::span(kGrids).subspan(extent_.is_short ? kGrids.size() - 1 : 0)) {
       if (tried.found.side == 0) return tried;
@@ -140,6 +142,13 @@ class FewPacker {
       tried.found = compact_on(own, tried, scale);
     }
     return tried;
+  }
+
+  /// A step of a coarse grid moves the far end of a large island by many texels.
+  static void turn_finely(Attempt& tried) {
+    const int factor = tried.placer->refine_turns(kFinerTurns);
+    for (CellPlace& spot : tried.found.spots) spot.turn *= factor;
+    for (int& turn : tried.found.arrangement.turn) turn *= factor;
   }
 
   /// A page must not be larger than the one for which the padding was made; the islands shrink
