@@ -93,7 +93,8 @@ void try_tighter_bounds(std::span<const Surface> surfaces, UnwrapOptions options
   double last = border_of(*layouts.front().all);
   const auto is_shorter = [&](const Layout& own) { return last < border_of(own); };
   bool is_split = std::ranges::any_of(layouts, pipeline::has_split_charts);
-  while (is_split && (options.max_distortion = segment::tighter_bound(*options.max_distortion))) {
+  while (is_split && (options.max_distortion =
+                          segment::tighter_bound(*options.max_distortion, options.effort))) {
     const PreparedCharts prepared = pipeline::prepare_charts(surfaces, options, quiet, executor);
     const double border = border_of(*prepared.all);
     if (std::exchange(last, border) == border) continue;  // the same charts

@@ -57,7 +57,7 @@ class ComponentSearch {
  private:
   /// A bound below kDefaultDistortion is reached from that, step by step (ADR 0066).
   std::vector<charts::Chart> segmented_charts(SegmentRules rules) {
-    const TightBounds tight = tight_bounds(rules.max_distortion);
+    const TightBounds tight = tight_bounds(rules.max_distortion, rules.effort);
     const auto searches = static_cast<double>(tight.searched.size() + 1);
     rules.max_distortion = std::max(rules.max_distortion, kDefaultDistortion);
     std::vector<charts::Chart> parts;
@@ -74,7 +74,8 @@ class ComponentSearch {
     }
     for (std::size_t k = 0; k < tight.count; ++k) {
       rules.max_distortion = tight.searched[k];
-      const std::size_t count = std::min<std::size_t>(2, found.size() - k);
+      const std::size_t most = rules.effort == Effort::fast ? 1 : 2;
+      const std::size_t count = std::min(most, found.size() - k);
       parts = tightened(std::move(parts), std::span(found).subspan(k, count), rules);
     }
     is_rough_ = is_rough_ || was_rough;

@@ -52,7 +52,7 @@ class Search {
         surface_(
             make_segmentation_mesh(coarse_.mesh, coarse_.halfedges, {},
                                    coarse_avoid(coarse_, component.mesh, component.halfedges))),
-        steps_(excess_steps(rules.max_distortion)) {}
+        steps_(excess_steps(rules.max_distortion, rules.effort)) {}
 
   /// Measures what the small surface hides: whether that leaves room for the first of the steps.
   bool has_room() {

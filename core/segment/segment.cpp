@@ -25,6 +25,7 @@ constexpr double kAnyExcess = 1e6, kFarWeight = 10;  // beyond the bound, for a 
 constexpr double kFacesOfQuick = 20, kQuickWeight = 1;
 constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
 constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
+constexpr std::array kFastSteps = {2.5, 5.0, 10.0};
 constexpr int kDecades = 4;
 constexpr double kSameBound = 1e-9;
 
@@ -156,23 +157,25 @@ bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most)
   return one.length < other.length;
 }
 
-std::vector<double> excess_steps(double max_distortion) {
+std::vector<double> excess_steps(double max_distortion, Effort effort) {
+  using Steps = std::span<const double>;
+  const Steps of_a_decade = effort == Effort::fast ? Steps(kFastSteps) : Steps(kSteps);
   std::vector<double> steps{std::min(max_distortion, kDefaultDistortion) - 2};
   double decade = kDefaultDistortion - 2;
   for (int k = 0; k < kDecades; ++k, decade *= 10)
-    for (const double step : kSteps)
+    for (const double step : of_a_decade)
       if (2 + step * decade <= max_distortion + kSameBound) steps.push_back(step * decade);
   return steps;
 }
 
-std::optional<double> tighter_bound(double max_distortion) {
-  const std::vector<double> steps = excess_steps(max_distortion);
+std::optional<double> tighter_bound(double max_distortion, Effort effort) {
+  const std::vector<double> steps = excess_steps(max_distortion, effort);
   if (steps.size() < 2) return std::nullopt;
   return 2 + steps[steps.size() - 2];
 }
 
 Segments segment(const SegmentationMesh& surface, const SegmentRules& rules, Executor& executor) {
-  const std::vector<double> steps = excess_steps(rules.max_distortion);
+  const std::vector<double> steps = excess_steps(rules.max_distortion, rules.effort);
   SurfaceSegmentation segmentation(surface, rules, steps.size() - 1, executor);
   Segments best = segmentation.first(steps.front());
   for (const double excess : std::span(steps).subspan(1)) {

@@ -100,10 +100,11 @@ class SurfaceSegmentation {
 /// The excess over 2 of each bound on the way to max_distortion, ascending (ADR 0039). The search
 /// for the first starts anew, the others continue from the one before. A max_distortion below
 /// kDefaultDistortion is the only step; above it all bounds share their steps, as far as they go.
-std::vector<double> excess_steps(double max_distortion);
+/// Effort::fast takes fewer of them.
+std::vector<double> excess_steps(double max_distortion, Effort effort);
 
 /// The bound of the step before the last one; empty where there is only one.
-std::optional<double> tighter_bound(double max_distortion);
+std::optional<double> tighter_bound(double max_distortion, Effort effort);
 
 /// The regions for the rules' bound: of those of all steps up to it (excess_steps()), the ones with
 /// the shortest seams. Throws Error{cancelled}.

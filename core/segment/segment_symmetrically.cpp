@@ -108,7 +108,7 @@ SegmentRules rules_for(const SegmentRules& rules, std::size_t part, std::size_t 
 std::optional<Segments> segment_symmetrically(const charts::Chart& component,
                                               const SegmentationMesh& surface, const Mirror& mirror,
                                               const SegmentRules& rules, Executor& executor) {
-  const std::vector<double> steps = excess_steps(rules.max_distortion);
+  const std::vector<double> steps = excess_steps(rules.max_distortion, rules.effort);
   std::vector<charts::ChartPart> parts = front_parts(component, mirror, rules.stop);
   std::deque<FrontSearch> searches;
   for (std::size_t k = 0; k < parts.size(); ++k)

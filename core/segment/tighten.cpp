@@ -51,7 +51,7 @@ double level_of(const std::vector<Weighed>& charts, double budget) {
 
 }  // namespace
 
-TightBounds tight_bounds(double max_distortion) {
+TightBounds tight_bounds(double max_distortion, Effort effort) {
   TightBounds bounds;
   if (max_distortion >= kDefaultDistortion) return bounds;
   const auto last =
@@ -59,7 +59,8 @@ TightBounds tight_bounds(double max_distortion) {
   const std::ptrdiff_t steps = std::min(last, kTightBounds.end() - 1) - kTightBounds.begin() + 1;
   bounds.count = static_cast<std::size_t>(steps);
   bounds.searched.assign(kTightBounds.begin(), kTightBounds.begin() + steps);
-  if (bounds.count < kTightBounds.size()) bounds.searched.push_back(kTightBounds[bounds.count]);
+  if (effort != Effort::fast && bounds.count < kTightBounds.size())
+    bounds.searched.push_back(kTightBounds[bounds.count]);
   return bounds;
 }
 

@@ -13,12 +13,12 @@ namespace unwrapd::segment {
 
 /// Bounds below kDefaultDistortion on the way to another, descending (ADR 0066).
 struct TightBounds {
-  std::vector<double> searched;  ///< one beyond the last step, where there is one
+  std::vector<double> searched;  ///< one beyond the last step, where there is one and time for it
   std::size_t count = 0;         ///< of steps; what lies between two steps counts as the lower one
 };
 
-/// None from kDefaultDistortion on.
-TightBounds tight_bounds(double max_distortion);
+/// None from kDefaultDistortion on. Effort::fast searches for none beyond the last step.
+TightBounds tight_bounds(double max_distortion, Effort effort);
 
 /// The parts of a chart, each a disk with a start, that keep a bound of distortion together.
 using SplitChart =

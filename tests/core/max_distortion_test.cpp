@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/segment/chart_excess.hpp"
@@ -43,14 +44,16 @@ TriMesh bent(TriMesh mesh, unsigned seed) {
 TEST(MaxDistortion, HasNoLongerSeamsWhereItIsLooser) {
   const Surface surface = shapes::surface_of(bent(shapes::cube(2), 2));
   SerialExecutor serial;
-  double last = std::numeric_limits<double>::infinity();
-  for (const double bound : {2.02, 2.1}) {
-    const Report report =
-        unwrap(std::vector{surface}, {.max_distortion = bound}, {}, serial).report;
-    EXPECT_LE(report.distortion.angle, bound);
-    EXPECT_LE(report.distortion.area, bound);
-    EXPECT_LE(report.seam_length, last * (1 + 1e-9)) << bound;
-    last = report.seam_length;
+  for (const Effort effort : {Effort::fast, Effort::balanced}) {
+    double last = std::numeric_limits<double>::infinity();
+    for (const double bound : {2.02, 2.1}) {
+      const UnwrapOptions options{.max_distortion = bound, .effort = effort};
+      const Report report = unwrap(std::vector{surface}, options, {}, serial).report;
+      EXPECT_LE(report.distortion.angle, bound);
+      EXPECT_LE(report.distortion.area, bound);
+      EXPECT_LE(report.seam_length, last * (1 + 1e-9)) << bound;
+      last = report.seam_length;
+    }
   }
 }
 
@@ -70,12 +73,13 @@ double border_of(std::span<const charts::Chart> charts) {
 /// Here searches of their own for 2.002 are luckier than those for 2.005.
 TEST(MaxDistortion, HasNoLongerSeamsBelowTheDefaultEither) {
   SerialExecutor serial;
-  for (const unsigned seed : {1U, 6U}) {
+  for (const auto& [seed, effort] :
+       {std::pair{1U, Effort::balanced}, {6U, Effort::balanced}, {6U, Effort::fast}}) {
     const Surface surface = shapes::surface_of(shapes::random_disk(16, seed));
     double last = std::numeric_limits<double>::infinity();
     for (const double bound : {2.0005, 2.002, 2.005, 2.01, 2.02}) {
       std::vector<charts::Charts> cut{charts::components_of(surface, {})};
-      segment::segment_charts(cut, {.max_distortion = bound}, {}, serial);
+      segment::segment_charts(cut, {.max_distortion = bound, .effort = effort}, {}, serial);
       EXPECT_LE(segment::chart_excess(cut[0].charts, serial, {}).worst(), bound - 2);
       EXPECT_LE(border_of(cut[0].charts), last * (1 + 1e-9)) << seed << ' ' << bound;
       last = border_of(cut[0].charts);

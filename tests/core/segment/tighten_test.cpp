@@ -63,16 +63,18 @@ TEST(Tighten, SplitsNoChartThatWouldMakeTooMany) {
 }
 
 TEST(Tighten, SearchesForOneBoundBeyondTheLastStep) {
-  for (const double bound : {2.02, 3.0}) EXPECT_EQ(tight_bounds(bound).count, 0U);
+  for (const double bound : {2.02, 3.0}) EXPECT_EQ(tight_bounds(bound, Effort::balanced).count, 0U);
   for (const double bound : {2.015, 2.01}) {
-    EXPECT_EQ(tight_bounds(bound).count, 1U);
-    EXPECT_EQ(tight_bounds(bound).searched, (std::vector{2.01, 2.005}));
+    EXPECT_EQ(tight_bounds(bound, Effort::balanced).count, 1U);
+    EXPECT_EQ(tight_bounds(bound, Effort::balanced).searched, (std::vector{2.01, 2.005}));
   }
-  EXPECT_EQ(tight_bounds(2.004).count, 3U);
-  EXPECT_EQ(tight_bounds(2.004).searched, (std::vector{2.01, 2.005, 2.002, 2.001}));
-  const TightBounds all = tight_bounds(2.0001);
+  EXPECT_EQ(tight_bounds(2.004, Effort::balanced).count, 3U);
+  EXPECT_EQ(tight_bounds(2.004, Effort::balanced).searched,
+            (std::vector{2.01, 2.005, 2.002, 2.001}));
+  const TightBounds all = tight_bounds(2.0001, Effort::balanced);
   EXPECT_EQ(all.count, all.searched.size());
   EXPECT_EQ(all.searched.back(), 2.0001);
+  EXPECT_EQ(tight_bounds(2.004, Effort::fast).searched, (std::vector{2.01, 2.005, 2.002}));
 }
 
 }  // namespace
