@@ -1,9 +1,10 @@
 // Of a PLY, the positions, normals and texture coordinates of the element "vertex" and the corners
-// of the element "face" are read; all other values are passed over, and told.
+// of the elements "face" and "tristrips" are read; all other values are passed over, and told.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/asset/mesh_file.hpp"
 #include "core/asset/ply.hpp"
@@ -58,7 +59,9 @@ class PlyReader {
       if (element.name == "vertex" && surface_.mesh.positions.empty()) {
         read_vertices(element);
       } else if (element.name == "face") {
-        read_faces(element);
+        read_lists(element, [&](const PlyProperty& list) { read_corners(list); });
+      } else if (element.name == "tristrips") {
+        read_lists(element, [&](const PlyProperty& list) { read_strips(list); });
       } else {
         skip(element);
       }
@@ -115,26 +118,54 @@ class PlyReader {
     return row;
   }
 
-  void read_faces(const PlyElement& element) {
+  /// take: reads one list of corners.
+  template <class Take>
+  void read_lists(const PlyElement& element, Take take) {
     const auto found = std::ranges::find_if(element.properties, is_corner_list);
     const PlyProperty* const corners = found == element.properties.end() ? nullptr : &*found;
     for (const PlyProperty& property : element.properties)
       if (&property != corners) drop(element, property);
     for (std::int64_t i = 0; i < element.count && !element.properties.empty(); ++i)
       for (const PlyProperty& property : element.properties)
-        &property == corners ? read_corners(property) : values_.skip(property);
+        &property == corners ? take(property) : values_.skip(property);
   }
 
   void read_corners(const PlyProperty& list) {
     const std::size_t count = values_.next_count(list);
-    for (std::size_t k = 0; k < count; ++k) {
-      const double corner = values_.next(list.type);
-      if (!(corner >= 0 && corner < std::numeric_limits<Index>::max()) ||
-          std::trunc(corner) != corner)
-        values_.refuse("a corner of a face is no number of a vertex");
-      polygons_.corners.push_back(static_cast<Index>(corner));
-    }
+    for (std::size_t k = 0; k < count; ++k)
+      polygons_.corners.push_back(corner_of(values_.next(list.type)));
     polygons_.ends.push_back(polygons_.corners.size());
+  }
+
+  Index corner_of(double value) const {
+    if (!(value >= 0 && value < std::numeric_limits<Index>::max()) || std::trunc(value) != value)
+      values_.refuse("a corner of a face is no number of a vertex");
+    return static_cast<Index>(value);
+  }
+
+  /// Strips, with -1 between them: each corner makes a triangle with the two before it, every
+  /// second one the other way round. A corner that comes twice only leads the strip on.
+  void read_strips(const PlyProperty& list) {
+    Index first = 0, second = 0;
+    std::size_t length = 0;  // corners of the strip so far
+    for (std::size_t left = values_.next_count(list); left > 0; --left) {
+      const double value = values_.next(list.type);
+      if (value == -1) {
+        length = 0;
+        continue;
+      }
+      const Index third = corner_of(value);
+      if (length >= 2 && first != second && second != third && third != first)
+        length % 2 == 0 ? add_triangle(first, second, third) : add_triangle(second, first, third);
+      first = std::exchange(second, third);
+      ++length;
+    }
+  }
+
+  void add_triangle(Index a, Index b, Index c) {
+    polygons_.corners.insert(polygons_.corners.end(), {a, b, c});
+    polygons_.ends.push_back(polygons_.corners.size());
+    check_face_count(static_cast<std::int64_t>(polygons_.ends.size()), limits_);
   }
 
   /// At the end, since the faces may precede the vertices.

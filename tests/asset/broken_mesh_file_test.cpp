@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "tests/asset/memory_guard.hpp"
 #include "tests/asset/mesh_file_samples.hpp"
@@ -70,6 +71,21 @@ TEST(Ply, BrokenFilesAreRefusedWithTheirPlace) {
     EXPECT_EQ(error.where(), c.where) << c.to;
     EXPECT_THAT(error.what(), HasSubstr(c.message)) << c.to;
   }
+}
+
+TEST(Ply, BrokenStripsAreRefused) {
+  EXPECT_THAT(error_of(strips_ply({0, 1, 2, -2}, true)).what(), HasSubstr("no number of a vertex"));
+  EXPECT_THAT(error_of(strips_ply({0, 1, 8}, false)).what(), HasSubstr("vertex 8"));
+  EXPECT_EQ(error_of(strips_ply({0, 1, -1, 2, 3, -1, 4, 4, 4}, true)).code(),
+            ErrorCode::no_triangles);
+}
+
+TEST(Ply, StripsEndAtTheLimitOfFaces) {
+  std::vector<int> corners;
+  for (int k = 0; k < 300; ++k) corners.push_back(k % 8);
+  const std::string file = strips_ply(corners, false);
+  EXPECT_EQ(error_of(file, {.max_faces = 297}).code(), ErrorCode::too_many_faces);
+  EXPECT_NO_THROW(read({file, {}}, {.max_faces = 298}));
 }
 
 TEST(Ply, APointCloudHasNoFaces) {

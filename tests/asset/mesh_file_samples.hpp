@@ -114,6 +114,22 @@ inline std::string cube_text_ply() {
   return file + "0\n";
 }
 
+/// Its sides as strips with -1 between them. `corners`: of all strips, in one list.
+inline std::string strips_ply(const std::vector<int>& corners, bool is_text) {
+  std::string file = std::string("ply\nformat ") + (is_text ? "ascii" : "binary_little_endian") +
+                     " 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+                     "property float z\nelement tristrips 1\n"
+                     "property list int int vertex_indices\nend_header\n";
+  const auto add = [&](auto value) {
+    file += is_text ? std::to_string(value) + " " : bytes(value, false);
+  };
+  for (const auto& [x, y, z] : kCubeCorners)
+    for (const int value : {x, y, z}) add(static_cast<float>(value));
+  add(static_cast<std::int32_t>(corners.size()));
+  for (const int corner : corners) add(std::int32_t{corner});
+  return file;
+}
+
 /// The cube in every encoding, by its name.
 inline const std::map<std::string, std::string>& cubes() {
   static const std::map<std::string, std::string> kCubes = {

@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <set>
+#include <vector>
 
 #include "tests/asset/mesh_file_samples.hpp"
 #include "tests/asset/support.hpp"
@@ -157,6 +161,34 @@ TEST(Ply, TextureCoordinatesOfVerticesAreRead) {
         const Vec3& p = surface.mesh.positions[static_cast<std::size_t>(surface.mesh.faces[t][k])];
         EXPECT_EQ(surface.corner_uv[t][k], Vec2(p.x() / 2, p.y() / 4));
       }
+  }
+}
+
+/// The triangles, each from its lowest corner on.
+std::set<std::array<Index, 3>> turned_triangles(const TriMesh& mesh) {
+  std::set<std::array<Index, 3>> all;
+  for (const Triangle& face : mesh.faces) {
+    std::array<Index, 3> corners{face[0], face[1], face[2]};
+    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    all.insert(corners);
+  }
+  return all;
+}
+
+TEST(Ply, StripsAreTrianglesOfOneSide) {
+  std::vector<int> each_side, in_one;
+  for (const auto& [a, b, c, d] : kCubeQuads) {
+    each_side.insert(each_side.end(), {a, b, d, c, -1});
+    // A strip goes on to the next side by two corners that come twice.
+    if (!in_one.empty()) in_one.insert(in_one.end(), {in_one.back(), a});
+    in_one.insert(in_one.end(), {a, b, d, c});
+  }
+  for (const bool is_text : {true, false}) {
+    const TriMesh apart = read_file(strips_ply(each_side, is_text)).surfaces()[0].mesh;
+    EXPECT_EQ(apart.faces.size(), 12U);
+    EXPECT_DOUBLE_EQ(volume(apart), 6);
+    const TriMesh joined = read_file(strips_ply(in_one, is_text)).surfaces()[0].mesh;
+    EXPECT_EQ(turned_triangles(joined), turned_triangles(apart));
   }
 }
 

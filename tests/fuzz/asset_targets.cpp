@@ -75,7 +75,8 @@ std::vector<std::string> stl_seeds() {
 
 std::vector<std::string> ply_seeds() {
   return {asset::test::cube_text_ply(), asset::test::cube_binary_ply(false),
-          asset::test::cube_binary_ply(true)};
+          asset::test::cube_binary_ply(true),
+          asset::test::strips_ply({0, 1, 3, 2, -1, 4, 5, 7}, false)};
 }
 
 std::vector<std::string> off_seeds() { return {asset::test::cube_off()}; }
