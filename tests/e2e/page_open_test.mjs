@@ -21,6 +21,24 @@ function ply() {
   return [...head, ...points.map((point) => point.join(" ")), ...faces.map((face) => `3 ${face.join(" ")}`), ""].join("\n");
 }
 
+/** A pyramid on five sides: six faces, one of five corners, or the same as a strip and a fan of strips. */
+function pyramid(kind) {
+  const points = [...Array(5).keys()].map((k) => [Math.cos((2 * Math.PI * k) / 5), Math.sin((2 * Math.PI * k) / 5), 0]).concat([[0, 0, 1]]);
+  const lists = kind === "face"
+    ? [[4, 3, 2, 1, 0], ...[0, 1, 2, 3, 4].map((k) => [k, (k + 1) % 5, 5])]
+    : [[4, 3, 0, 2, 1, -1, 0, 1, 5, 2, 2, -1, 2, 3, 5, 4, -1, 4, 0, 5]];
+  const head = Buffer.from(["ply", "format binary_big_endian 1.0", "element vertex 6", ...["x", "y", "z"].map((axis) => `property double ${axis}`),
+    `element ${kind} ${lists.length}`, "property list uchar int vertex_indices", "end_header", ""].join("\n"));
+  const values = Buffer.alloc(6 * 24);
+  points.flat().forEach((value, i) => values.writeDoubleBE(value, 8 * i));
+  return Buffer.concat([head, values, ...lists.map((list) => {
+    const bytes = Buffer.alloc(1 + 4 * list.length);
+    bytes.writeUInt8(list.length);
+    list.forEach((corner, i) => bytes.writeInt32BE(corner, 1 + 4 * i));
+    return bytes;
+  })]);
+}
+
 function off() {
   const { points, faces } = TETRAHEDRON;
   return ["OFF", "4 4 6", ...points.map((point) => point.join(" ")), ...faces.map((face) => `3 ${face.join(" ")}`), ""].join("\n");
@@ -42,6 +60,16 @@ describe("the page opens", { skip: missing }, () => {
       await page.locator("#result").waitFor();
       assert.deepEqual(page.complaints, []);
       assert.deepEqual(page.elsewhere, []);
+    });
+
+  for (const kind of ["face", "tristrips"])
+    test(`a PLY with ${kind === "face" ? "a face of five corners" : "strips of triangles"}, as the server reads it`, async (t) => {
+      const page = await bench.visit(t);
+      await openMesh(page, bench.file("pyramid.ply", pyramid(kind)));
+      assert.match(await says(page), /8 triangles and 6 vertices\.\nOne connected piece; closed: it has no boundary\./);
+      await unwrap(page);
+      assert.match(await page.locator("#result").innerText(), /charts?/);
+      assert.deepEqual(page.complaints, []);
     });
 
   test("a glTF with the buffers beside it, dropped beside the box", async (t) => {

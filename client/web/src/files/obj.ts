@@ -1,29 +1,7 @@
 // OBJ and OFF: text with a line for each vertex and face. Polygons become fans of triangles, as the
 // server makes them.
-import {IDENTITY, type Model} from '../mesh/model.js';
-
-/** A list of numbers that grows. */
-class Numbers {
-  length = 0;
-  #array = new Float64Array(1024);
-
-  push(value: number): void {
-    if (this.length === this.#array.length) {
-      const larger = new Float64Array(2 * this.length);
-      larger.set(this.#array);
-      this.#array = larger;
-    }
-    this.#array[this.length++] = value;
-  }
-
-  at(index: number): number {
-    return this.#array[index]!;
-  }
-
-  get values(): Float64Array {
-    return this.#array.subarray(0, this.length);
-  }
-}
+import type {Model} from '../mesh/model.js';
+import {Numbers, modelOf} from './faces.js';
 
 class ObjReader {
   readonly places = new Numbers();
@@ -75,13 +53,6 @@ function* linesOf(bytes: Uint8Array): Generator<string> {
   yield rest;
 }
 
-/** Throws RangeError with the first corner that names no vertex. */
-function model(positions: Float64Array, faces: Float64Array, uvSets: {name: string; uv: Float32Array}[]): Model {
-  const wrong = faces.findIndex((v) => !(v >= 0 && v < positions.length / 3));
-  if (wrong >= 0) throw new RangeError(`face ${Math.floor(wrong / 3) + 1} names vertex ${faces[wrong]! + 1}, which does not exist.`);
-  return {parts: [{name: '', positions: Float32Array.from(positions), faces: Uint32Array.from(faces), uvSets, places: [IDENTITY]}]};
-}
-
 export function readObj(bytes: Uint8Array): Model {
   const reader = new ObjReader();
   let begun = '';
@@ -93,7 +64,7 @@ export function readObj(bytes: Uint8Array): Model {
       begun = '';
     }
   }
-  return model(reader.places.values, reader.faces.values, reader.uvSets);
+  return modelOf(reader.places.values, reader.faces.values, reader.uvSets);
 }
 
 export function readOff(text: string): Model {
@@ -109,5 +80,5 @@ export function readOff(text: string): Model {
     const [size = 0, ...corners] = line.trim().split(/\s+/).map(Number);
     for (let i = 2; i < size; i += 1) for (const corner of [corners[0]!, corners[i - 1]!, corners[i]!]) faces.push(corner);
   }
-  return model(positions, faces.values, []);
+  return modelOf(positions, faces.values, []);
 }
