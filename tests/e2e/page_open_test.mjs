@@ -39,9 +39,11 @@ function pyramid(kind) {
   })]);
 }
 
+/** With normals and colours, and corners on lines of their own. */
 function off() {
   const { points, faces } = TETRAHEDRON;
-  return ["OFF", "4 4 6", ...points.map((point) => point.join(" ")), ...faces.map((face) => `3 ${face.join(" ")}`), ""].join("\n");
+  return ["NOFF # made", "4 4 6", ...points.map((point) => `${point.join(" ")} 0 0 1 # a corner`),
+    ...faces.map((face) => `3 ${face.join("\n")} 255 0 0`), ""].join("\n");
 }
 
 describe("the page opens", { skip: missing }, () => {

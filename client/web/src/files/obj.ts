@@ -67,18 +67,45 @@ export function readObj(bytes: Uint8Array): Model {
   return modelOf(reader.places.values, reader.faces.values, reader.uvSets);
 }
 
-export function readOff(text: string): Model {
-  const words = text.replace(/#.*/g, '').split(/\s+/).filter(Boolean);
-  let at = /OFF$/.test(words[0] ?? '') ? 1 : 0;
-  const take = () => Number(words[at++]);
-  const [vertices, polygons] = [take(), take()];
-  take(); // edges
-  const positions = Float64Array.from({length: 3 * vertices}, take);
-  const faces = new Numbers();
-  const lines = text.replace(/#.*/g, '').split(/\r\n|\r|\n/).filter((line) => line.trim());
-  for (const line of lines.slice(lines.length - polygons)) {
-    const [size = 0, ...corners] = line.trim().split(/\s+/).map(Number);
-    for (let i = 2; i < size; i += 1) for (const corner of [corners[0]!, corners[i - 1]!, corners[i]!]) faces.push(corner);
+/** The numbers of a text, with comments behind #. */
+class NumbersOfText {
+  readonly #number = /(?:\s|#[^\r\n]*)*([^\s#]+)/y;
+  readonly #restOfLine = /[^\r\n]*/y;
+
+  constructor(private readonly text: string, at: number) {
+    this.#number.lastIndex = at;
   }
-  return modelOf(positions, faces.values, []);
+
+  next(): number {
+    const found = this.#number.exec(this.text);
+    if (!found) throw new Error('it ends too early.');
+    return Number(found[1]);
+  }
+
+  skipLine(): void {
+    this.#restOfLine.lastIndex = this.#number.lastIndex;
+    this.#restOfLine.exec(this.text);
+    this.#number.lastIndex = this.#restOfLine.lastIndex;
+  }
+}
+
+/** What follows the coordinates of a vertex, or the corners of a face, on its line is passed over. */
+export function readOff(text: string): Model {
+  const [begin, keyword] = /^(?:\s|#[^\r\n]*)*((?:ST)?C?N?OFF)?/.exec(text)!;
+  const numbers = new NumbersOfText(text, begin.length);
+  const [vertices, polygons] = [numbers.next(), numbers.next()];
+  numbers.skipLine(); // edges
+  const positions = new Numbers();
+  const faces = new Numbers();
+  for (let v = 0; v < vertices; v += 1) {
+    for (let i = 0; i < 3; i += 1) positions.push(numbers.next());
+    if (keyword?.endsWith('NOFF')) for (let i = 0; i < 3; i += 1) numbers.next();
+    numbers.skipLine();
+  }
+  for (let f = 0; f < polygons; f += 1) {
+    const corners = Array.from({length: numbers.next()}, () => numbers.next());
+    for (let i = 2; i < corners.length; i += 1) for (const k of [0, i - 1, i]) faces.push(corners[k]!);
+    numbers.skipLine();
+  }
+  return modelOf(positions.values, faces.values, []);
 }
