@@ -1,5 +1,5 @@
-// OBJ and OFF: text with a line for each vertex and face. Polygons become fans of triangles, as the
-// server makes them.
+// OBJ and OFF: text with a line for each vertex and face. Polygons become fans of triangles: as
+// many as the server makes of them, and the same ones where a polygon is convex.
 import type {Model} from '../mesh/model.js';
 import {Numbers, modelOf} from './faces.js';
 
