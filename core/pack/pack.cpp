@@ -1,7 +1,8 @@
 // One page: few islands are compacted (pack_few), many are placed by touching perimeter
-// (pack_many). Several pages, or a given density: a search over orders and rotations on coarse
-// grids, where it is cheap, then placement on a fine one. Islands keep their scale and the page
-// shrinks; the cells' size in texels, and with it the padding in cells, follows from its side.
+// (pack_many), or around the few that are large (pack_large_first). Several pages, or a given
+// density: a search over orders and rotations on coarse grids, where it is cheap, then placement on
+// a fine one. Islands keep their scale and the page shrinks; the cells' size in texels, and with it
+// the padding in cells, follows from its side.
 #include "core/pack/pack.hpp"
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "core/pack/box.hpp"
 #include "core/pack/compact.hpp"
 #include "core/pack/pack_few.hpp"
+#include "core/pack/pack_large_first.hpp"
 #include "core/pack/pack_many.hpp"
 #include "core/pack/pack_stacked.hpp"
 #include "core/pack/page_grid.hpp"
@@ -55,11 +57,17 @@ class Packer {
   /// Packs the islands as large as they fit on the allowed pages.
   PackResult largest() {
     if (page_.packing.max_pages > 1) return on_several();
-    if (placer_.size() <= kFewOnAPage) {
+    const bool are_few_large = count_large(outlines_) <= kFewOnAPage;
+    if (are_few_large && placer_.size() <= kFewWithSmall) {
       auto few = pack_few(outlines_, grid_, {page_.packing.rotation, page_.effort}, executor_);
       if (few) return {std::move(*few), 1, padding_, {}};
     }
-    return {pack_many(placer_, grid_, page_.effort, executor_), 1, padding_, {}};
+    std::vector<Placement> best = pack_many(placer_, grid_, page_.effort, executor_);
+    if (are_few_large && padding_ == page_.padding) {
+      auto around = pack_large_first(outlines_, page_, executor_);
+      if (around && around->front().scale > best.front().scale) best = std::move(*around);
+    }
+    return {std::move(best), 1, padding_, {}};
   }
 
   /// The share of the page that a short search on coarse grids fills. area: of all islands.

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -30,6 +31,7 @@ namespace {
 constexpr double kRoundingOfUvs = 1e-6;  // by which an island may cross the border of its page
 constexpr double kWordsAround = 4e6;     // words for each island, up to kMostIslands of them
 constexpr double kMostIslands = 12;
+constexpr std::size_t kAllOrders = std::numeric_limits<std::size_t>::max();
 
 [[noreturn]] void refuse_locked() {
   throw Error(ErrorCode::does_not_fit,
@@ -180,13 +182,10 @@ int page_holding(const charts::Outline& island, double aspect, int pages) {
   return is_within ? static_cast<int>(page) : -1;
 }
 
-namespace {
-
-/// The islands that are not locked, placed around those that are; no placements where these do not
-/// suffice.
-std::optional<PackResult> packed_around(std::span<const charts::Outline> islands,
-                                        std::span<const charts::Outline> locked,
-                                        const PageOptions& page, Executor& executor) {
+std::optional<PackResult> try_pack_around(std::span<const charts::Outline> islands,
+                                          std::span<const charts::Outline> locked,
+                                          const PageOptions& page, std::size_t most_orders,
+                                          Executor& executor) {
   PackResult result{.placements = {}, .pages = 1, .padding = double(page.padding)};
   std::vector<int> pages;
   for (const charts::Outline& own : locked) {
@@ -203,13 +202,17 @@ std::optional<PackResult> packed_around(std::span<const charts::Outline> islands
   for (std::size_t k = 0; k < locked.size(); ++k) taken.push_back(cells.of(locked[k], pages[k]));
   const double shares = std::min(static_cast<double>(islands.size()), kMostIslands);
   Budget budget{static_cast<std::int64_t>(kWordsAround * shares), executor.stop()};
-  const CellPacking found = fewest_pages(placer, usual_arrangements(placer),
-                                         cells.pages(page.packing.max_pages, taken), budget);
+  std::vector<Arrangement> orders = usual_arrangements(placer);
+  orders.resize(std::min(orders.size(), most_orders));
+  const CellPacking found =
+      fewest_pages(placer, orders, cells.pages(page.packing.max_pages, taken), budget);
   if (found.side == 0) return std::nullopt;
   result.pages = std::max(result.pages, static_cast<Index>(found.pages));
   result.placements = placements_of(found, placer, grid);
   return result;
 }
+
+namespace {
 
 /// The islands, the largest first, whose present places are as good as any: with the padding from
 /// the border, from what is locked and from each other.
@@ -244,7 +247,8 @@ PackResult pack_around(std::span<const charts::Outline> islands,
                        Executor& executor) {
   for (std::size_t k = 0; k < islands.size(); ++k)
     if (is_beyond_page(islands[k], page.aspect())) refuse_large(k);
-  if (auto all = packed_around(islands, locked, page, executor)) return std::move(*all);
+  if (auto all = try_pack_around(islands, locked, page, kAllOrders, executor))
+    return std::move(*all);
   const std::vector<std::size_t> well = well_placed(islands, locked, page, executor.stop());
   for (const double share : {0.5, 0.75, 1.0}) {
     const auto count = static_cast<std::size_t>(share * static_cast<double>(well.size()));
@@ -256,7 +260,7 @@ PackResult pack_around(std::span<const charts::Outline> islands,
     }
     for (std::size_t k = 0; k < islands.size(); ++k)
       if (stays[k] == 0) rest.push_back(islands[k]);
-    const auto some = packed_around(rest, there, page, executor);
+    const auto some = try_pack_around(rest, there, page, kAllOrders, executor);
     if (!some) continue;
     PackResult result{.placements = {}, .pages = some->pages, .padding = some->padding};
     std::size_t next = 0;

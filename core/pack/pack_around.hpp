@@ -1,6 +1,7 @@
 #pragma once
 // Packs islands on pages that others have places on already.
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -22,5 +23,12 @@ int page_holding(const charts::Outline& island, double aspect, int pages);
 PackResult pack_around(std::span<const charts::Outline> islands,
                        std::span<const charts::Outline> locked, const PageOptions& page,
                        Executor& executor);
+
+/// The same with all of `islands` in new places; empty where the pages do not suffice. most_orders:
+/// in which they are set down, tried one after another.
+std::optional<PackResult> try_pack_around(std::span<const charts::Outline> islands,
+                                          std::span<const charts::Outline> locked,
+                                          const PageOptions& page, std::size_t most_orders,
+                                          Executor& executor);
 
 }  // namespace unwrapd::pack

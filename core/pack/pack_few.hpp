@@ -13,7 +13,8 @@
 
 namespace unwrapd::pack {
 
-inline constexpr std::size_t kFewOnAPage = 40;  ///< at most
+inline constexpr std::size_t kFewOnAPage = 40;     ///< at most
+inline constexpr std::size_t kFewWithSmall = 120;  ///< the same where only kFewOnAPage are large
 
 /// The first compaction: on a coarse grid, with moves to any place.
 inline constexpr CompactRules kFirstCompaction{128, 0, 1, 14};

@@ -74,6 +74,30 @@ TriMesh cap(double faces, Random& random) {
   return shapes::sphere_cap(2 * side(faces) / 2, side(faces), between(random, 1.2, 2.6));
 }
 
+TriMesh of_size(TriMesh mesh, double size, double at) {
+  Vec3 low = mesh.positions.front(), high = low;
+  for (const Vec3& p : mesh.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double factor = size / (high - low).maxCoeff();
+  for (Vec3& p : mesh.positions) p = factor * (p - low) + Vec3(at, 0, 0);
+  return mesh;
+}
+
+TriMesh crowd(double faces, Random& random) {
+  const int bodies = 1 + static_cast<int>(random() % 3),
+            parts = 10 + static_cast<int>(random() % 50);
+  const double size = between(random, .04, .2);
+  std::vector<TriMesh> all;
+  for (int k = 0; k < bodies; ++k)
+    all.push_back(
+        of_size(seeded_body(faces / (2 * bodies), 0, static_cast<unsigned>(random())), 1, 2 * k));
+  for (int k = 0; k < parts; ++k) {
+    const double own = std::max(16.0, faces / (2 * parts));
+    const std::array<TriMesh, 3> kinds{blocks(own, random), torus(own, random), cap(own, random)};
+    all.push_back(of_size(kinds[random() % 3], size * between(random, .4, 1.2), 2 * (bodies + k)));
+  }
+  return shapes::merged(all);
+}
+
 }  // namespace
 
 TriMesh made_shape(const std::string& name) {
@@ -92,6 +116,7 @@ TriMesh made_shape(const std::string& name) {
   if (family == "hill") return shapes::random_disk(side(faces), seed);
   if (family == "cap") return cap(faces, random);
   if (family == "torus") return torus(faces, random);
+  if (family == "crowd") return crowd(faces, random);
   if (family == "opened") return opened_body(faces, seed);
   return {};
 }

@@ -12,7 +12,8 @@ namespace unwrapd::bench {
 /// (the same, rough), blocks (a closed hull of random cells, subdivided), boxes (a scene of boxes,
 /// each a component), soup (triangles apart), hill (a bumpy disk), cap (more than half of a sphere,
 /// open), torus, opened (a body
-/// cut from limb to limb to a disk). About that many faces. Empty where the name is none of these.
+/// cut from limb to limb to a disk), crowd (a few bodies and many parts much smaller than these).
+/// About that many faces. Empty where the name is none of these.
 TriMesh made_shape(const std::string& name);
 
 }  // namespace unwrapd::bench

@@ -68,6 +68,26 @@ TEST(PackOutlines, KeepsThePaddingAtEveryEffortAndFillsMoreWithMore) {
   }
 }
 
+/// Small stars behind five large ones.
+std::vector<charts::Outline> with_small_ones(int count, unsigned seed) {
+  std::vector<charts::Outline> islands = stars(5, seed);
+  for (const charts::Outline& own : stars(count, seed + 1))
+    islands.push_back(shapes::placed(own, {.scale = 0.06}));
+  return islands;
+}
+
+TEST(PackOutlines, ManySmallOnesTakeLittleFromFewLargeOnes) {
+  const PageOptions page{.resolution = 512, .padding = 2};
+  for (const int count : {60, 180}) {
+    double alone = 0, together = 0;
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      alone += expect_apart(stars(5, seed), page);
+      together += expect_apart(with_small_ones(count, seed), page);
+    }
+    EXPECT_GT(together, alone) << count;
+  }
+}
+
 TEST(PackOutlines, VeryFewFillNearlyAsMuchAsWithTheMostWork) {
   double usual = 0, best = 0;
   for (int seed = 1; seed <= 8; ++seed)
@@ -110,10 +130,12 @@ TEST(PackOutlines, LaysTheSmallInTheHollowOfTheLarge) {
 
 TEST(PackOutlines, GivesTheSamePlacementsForAnyNumberOfThreads) {
   TwoThreads threads;
-  const auto a = pack_alone(stars(9, 5)).placements, b = pack(stars(9, 5), {}, threads).placements;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    EXPECT_EQ(a[k].offset, b[k].offset);
-    EXPECT_EQ(a[k].cosine, b[k].cosine);
+  for (const auto& islands : {stars(9, 5), with_small_ones(150, 5)}) {
+    const auto a = pack_alone(islands).placements, b = pack(islands, {}, threads).placements;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      EXPECT_EQ(a[k].offset, b[k].offset);
+      EXPECT_EQ(a[k].cosine, b[k].cosine);
+    }
   }
 }
 
