@@ -16,25 +16,29 @@
 namespace unwrapd::pack {
 namespace {
 
-constexpr double kMostOfArea = 0.9;
-constexpr double kSmallest = 0.86;  // scale factor of the large islands' arrangement
-constexpr int kHalvings = 6;        // of the range of that factor
-constexpr std::size_t kOrders = 1;  // in which the others are set down; more seldom fit better
+constexpr double kMostOfArea = 0.9;  // held by the large islands
+constexpr double kNearlyAll = 0.98;  // held by those that are squeezed, or by as many as can be
+constexpr double kSmallest = 0.86;   // scale factor of the large islands' arrangement
+constexpr int kHalvings = 6;         // of the range of that factor
+constexpr std::size_t kOrders = 1;   // in which the others are set down; more seldom fit better
 
 struct BySize {
   std::vector<std::size_t> large, others;
 };
 
-BySize by_size(std::span<const charts::Outline> islands) {
+/// large: the fewest that hold that share of the area, or `most` of them; two at least.
+BySize by_size(std::span<const charts::Outline> islands, double share, std::size_t most) {
   std::vector<double> area;
   for (const charts::Outline& own : islands) area.push_back(std::abs(charts::area_of(own)));
   std::vector<std::size_t> order(islands.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t k) { return area[k]; });
-  double missing = kMostOfArea * std::accumulate(area.begin(), area.end(), 0.0);
+  double missing = share * std::accumulate(area.begin(), area.end(), 0.0);
   BySize sizes;
   for (const std::size_t k : order) {
-    (missing > 0 ? sizes.large : sizes.others).push_back(k);
+    const std::size_t count = sizes.large.size();
+    const bool is_large = count < 2 || (missing > 0 && count < most);
+    (is_large ? sizes.large : sizes.others).push_back(k);
     missing -= area[k];
   }
   return sizes;
@@ -114,14 +118,15 @@ class LargeFirst {
 }  // namespace
 
 std::size_t count_large(std::span<const charts::Outline> islands) {
-  return by_size(islands).large.size();
+  return by_size(islands, kMostOfArea, islands.size()).large.size();
 }
 
 std::optional<std::vector<Placement>> pack_large_first(std::span<const charts::Outline> islands,
                                                        const PageOptions& page,
                                                        Executor& executor) {
-  BySize sizes = by_size(islands);
-  if (sizes.large.size() < 2 || sizes.others.empty()) return std::nullopt;
+  BySize sizes = by_size(islands, kNearlyAll, kFewOnAPage);
+  if (sizes.others.empty() || charts::area_of(islands[sizes.large.front()]) == 0)
+    return std::nullopt;
   return LargeFirst(islands, std::move(sizes), page, executor).packed();
 }
 
