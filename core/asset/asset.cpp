@@ -5,41 +5,19 @@
 #include <utility>
 #include <variant>
 
-#include "core/asset/compress.hpp"
-#include "core/asset/convert.hpp"
+#include "core/asset/codec/compress.hpp"
+#include "core/asset/convert/convert.hpp"
+#include "core/asset/convert/float_frame.hpp"
 #include "core/asset/document.hpp"
-#include "core/asset/float_frame.hpp"
-#include "core/asset/obj_materials.hpp"
-#include "core/asset/obj_polygons.hpp"
+#include "core/asset/obj/materials.hpp"
+#include "core/asset/obj/polygons.hpp"
 #include "core/asset/painted.hpp"
-#include "core/asset/patch.hpp"
-#include "core/asset/read_gltf.hpp"
+#include "core/asset/reader/read_gltf.hpp"
 #include "core/asset/recognise.hpp"
+#include "core/asset/writer/patch.hpp"
 #include "core/asset/zip.hpp"
 
 namespace unwrapd::asset {
-
-std::string_view format_name(Format format) {
-  switch (format) {
-    case Format::glb:
-      return "glb";
-    case Format::gltf:
-      return "gltf";
-    case Format::obj:
-      return "obj";
-    case Format::stl:
-      return "stl";
-    case Format::ply:
-      return "ply";
-    case Format::off:
-      return "off";
-  }
-  return "glb";
-}
-
-Format usual_output(Format input) {
-  return input == Format::gltf || input == Format::obj ? input : Format::glb;
-}
 
 Asset::Asset(std::unique_ptr<Document> document) : document_(std::move(document)) {}
 Asset::Asset(Asset&&) noexcept = default;
@@ -54,9 +32,10 @@ int Asset::texcoord() const { return texcoord(usual_output(document_->format)); 
 
 int Asset::texcoord(Format output) const {
   if (const Gltf* gltf = std::get_if<Gltf>(&document_->source)) return gltf->texcoord.back() - '0';
-  const Obj* obj = std::get_if<Obj>(&document_->source);
-  return obj != nullptr && output != Format::obj && keeps_texcoords(*obj, document_->options) ? 1
-                                                                                              : 0;
+  const obj::Obj* obj = std::get_if<obj::Obj>(&document_->source);
+  return obj != nullptr && output != Format::obj && obj::keeps_texcoords(*obj, document_->options)
+             ? 1
+             : 0;
 }
 
 std::span<const FileRepair> Asset::repairs() const {
@@ -99,13 +78,14 @@ struct Plain {
 std::string compressed(Plain plain, Format output, Compression compression, bool with_fallback,
                        std::optional<int> draco_bits) {
   std::vector<Surface> surfaces;
-  const Gltf again = read_gltf({plain.glb, {}, plain.stop}, Format::glb, kNoLimits, {}, surfaces);
+  const Gltf again =
+      reader::read_gltf({plain.glb, {}, plain.stop}, Format::glb, kNoLimits, {}, surfaces);
   plain.glb = {};
   if (compression != Compression::draco)
-    return assemble(again, {again.json, {}, &again.aside}, output, MeshoptStyle{});
-  PatchedDocument packed = draco_compressed(again, with_fallback, draco_bits);
+    return writer::assemble(again, {again.json, {}, &again.aside}, output, codec::MeshoptStyle{});
+  PatchedDocument packed = codec::draco_compressed(again, with_fallback, draco_bits);
   packed.aside = plain.aside != nullptr ? plain.aside : &again.aside;
-  return assemble(again, std::move(packed), output);
+  return writer::assemble(again, std::move(packed), output);
 }
 
 bool is_compressed(Compression compression) {
@@ -117,17 +97,18 @@ std::string write_from_gltf(const Gltf& gltf, std::span<const UnwrappedSurface> 
   const bool is_kept = options.compression == Compression::keep;
   const Compression compression = is_kept ? gltf.came_as : options.compression;
   const bool with_fallback = is_kept && gltf.came_with_fallback;
-  PatchedDocument patched = patch(gltf, unwrapped, output);
+  PatchedDocument patched = writer::patch(gltf, unwrapped, output);
   if (compression == Compression::draco) {
     patched.aside = nullptr;  // so that unread members are not read again
-    return compressed({assemble(gltf, std::move(patched), Format::glb), &gltf.aside, gltf.stop},
-                      output, compression, with_fallback,
-                      is_kept ? std::nullopt : options.draco_bits);
+    return compressed(
+        {writer::assemble(gltf, std::move(patched), Format::glb), &gltf.aside, gltf.stop}, output,
+        compression, with_fallback, is_kept ? std::nullopt : options.draco_bits);
   }
-  if (compression != Compression::meshopt) return assemble(gltf, std::move(patched), output);
-  const MeshoptStyle style =
-      is_kept ? MeshoptStyle{gltf.meshopt_name, with_fallback} : MeshoptStyle{};
-  return assemble(gltf, std::move(patched), output, style);
+  if (compression != Compression::meshopt)
+    return writer::assemble(gltf, std::move(patched), output);
+  const codec::MeshoptStyle style =
+      is_kept ? codec::MeshoptStyle{gltf.meshopt_name, with_fallback} : codec::MeshoptStyle{};
+  return writer::assemble(gltf, std::move(patched), output, style);
 }
 
 /// How positions are rounded, if they are.
@@ -148,32 +129,33 @@ std::string write_gltf(const Document& document, const std::stop_token& stop, Fo
 
 std::string write_from_obj(const Document& document, const UnwrappedSurface& unwrapped,
                            Format output) {
-  const Obj& obj = std::get<Obj>(document.source);
-  if (output == Format::obj) return write_obj(obj, unwrapped);
+  const obj::Obj& obj = std::get<obj::Obj>(document.source);
+  if (output == Format::obj) return obj::write_obj(obj, unwrapped);
   return write_gltf(document, obj.stop, output, [&](Format format) {
-    return obj_as_gltf(obj, document.surfaces.front(), unwrapped,
-                       keeps_texcoords(obj, document.options), format);
+    return convert::obj_as_gltf(obj, document.surfaces.front(), unwrapped,
+                                obj::keeps_texcoords(obj, document.options), format);
   });
 }
 
 std::string write_from_mesh_file(const Document& document, const UnwrappedSurface& unwrapped,
                                  Format output) {
-  const MeshFile& file = std::get<MeshFile>(document.source);
+  const mesh_files::MeshFile& file = std::get<mesh_files::MeshFile>(document.source);
   const Surface& surface = document.surfaces.front();
-  if (output == Format::obj) return mesh_file_as_obj(file, surface, unwrapped);
+  if (output == Format::obj) return convert::mesh_file_as_obj(file, surface, unwrapped);
   return write_gltf(document, file.stop, output, [&](Format format) {
-    return mesh_file_as_gltf(file, surface, unwrapped, format);
+    return convert::mesh_file_as_gltf(file, surface, unwrapped, format);
   });
 }
 
 /// Reads all formats but glTF, which have one surface.
-std::variant<Gltf, Obj, MeshFile> read_one_mesh(const Input& input, const ReadLimits& limits,
-                                                Format format, Surface& surface) {
+std::variant<Gltf, obj::Obj, mesh_files::MeshFile> read_one_mesh(const Input& input,
+                                                                 const ReadLimits& limits,
+                                                                 Format format, Surface& surface) {
   surface.name = format_name(format);
-  if (format == Format::stl) return read_stl(input, limits, surface);
-  if (format == Format::ply) return read_ply(input, limits, surface);
-  if (format == Format::off) return read_off(input, limits, surface);
-  return read_obj(input, limits, surface);
+  if (format == Format::stl) return mesh_files::read_stl(input, limits, surface);
+  if (format == Format::ply) return mesh_files::read_ply(input, limits, surface);
+  if (format == Format::off) return mesh_files::read_off(input, limits, surface);
+  return obj::read_obj(input, limits, surface);
 }
 
 Asset read_document(const Input& input, const ReadLimits& limits, const AssetOptions& options) {
@@ -181,7 +163,8 @@ Asset read_document(const Input& input, const ReadLimits& limits, const AssetOpt
   document->options = options;
   document->format = recognise(input.document, input.stop);
   if (document->format == Format::glb || document->format == Format::gltf) {
-    document->source = read_gltf(input, document->format, limits, options, document->surfaces);
+    document->source =
+        reader::read_gltf(input, document->format, limits, options, document->surfaces);
   } else {
     check_for_one_mesh(options, document->format);
     document->surfaces.resize(1);
@@ -205,31 +188,31 @@ std::string write(const Asset& asset, std::span<const UnwrappedSurface> unwrappe
   const Document& document = asset.document();
   assert(unwrapped.size() == document.surfaces.size());
   assert(output == usual_output(output));
-  if (std::holds_alternative<Obj>(document.source))
+  if (std::holds_alternative<obj::Obj>(document.source))
     return write_from_obj(document, unwrapped.front(), output);
-  if (std::holds_alternative<MeshFile>(document.source))
+  if (std::holds_alternative<mesh_files::MeshFile>(document.source))
     return write_from_mesh_file(document, unwrapped.front(), output);
   const Gltf& gltf = std::get<Gltf>(document.source);
-  return output == Format::obj ? gltf_as_obj(gltf, document.surfaces, unwrapped)
+  return output == Format::obj ? convert::gltf_as_obj(gltf, document.surfaces, unwrapped)
                                : write_from_gltf(gltf, unwrapped, output, document.options);
 }
 
 std::vector<VertexMap> vertex_maps(const Asset& asset, std::span<const UnwrappedSurface> unwrapped,
                                    Format output) {
   const Document& document = asset.document();
-  if (const Obj* obj = std::get_if<Obj>(&document.source)) {
+  if (const obj::Obj* obj = std::get_if<obj::Obj>(&document.source)) {
     const Surface& surface = document.surfaces.front();
     if (output == Format::obj) return {{surface.name, surface.mesh.vertex_count(), {}}};
-    const bool keeps = keeps_texcoords(*obj, document.options);
-    return {{surface.name, 0, sources_in_gltf(*obj, surface, unwrapped.front(), keeps)}};
+    const bool keeps = obj::keeps_texcoords(*obj, document.options);
+    return {{surface.name, 0, convert::sources_in_gltf(*obj, surface, unwrapped.front(), keeps)}};
   }
-  if (const MeshFile* file = std::get_if<MeshFile>(&document.source)) {
+  if (const mesh_files::MeshFile* file = std::get_if<mesh_files::MeshFile>(&document.source)) {
     const Surface& surface = document.surfaces.front();
     if (output == Format::obj) return {{surface.name, surface.mesh.vertex_count(), {}}};
-    return {{surface.name, 0, sources_in_gltf(*file, surface, unwrapped.front())}};
+    return {{surface.name, 0, convert::sources_in_gltf(*file, surface, unwrapped.front())}};
   }
   const Gltf& gltf = std::get<Gltf>(document.source);
-  if (output != Format::obj) return vertex_maps_of_patch(gltf, unwrapped);
+  if (output != Format::obj) return writer::vertex_maps_of_patch(gltf, unwrapped);
   std::vector<VertexMap> maps;
   for (std::size_t s = 0; s < document.surfaces.size(); ++s)
     maps.push_back({document.surfaces[s].name, 0, gltf.vertices[s]});
@@ -246,18 +229,18 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   if (output == Format::obj && document.options.textures == TextureMode::transfer)
     notes.push_back(
         {NoteCode::option_unused, "An OBJ has no images; the option textures has no effect."});
-  FloatFrame frame;
+  convert::FloatFrame frame;
   if (output != Format::obj && !std::holds_alternative<Gltf>(document.source))
-    frame = float_frame(document.surfaces.front().mesh, {});
-  const std::vector<Note> on_floats = notes_on(frame);
+    frame = convert::float_frame(document.surfaces.front().mesh, {});
+  const std::vector<Note> on_floats = convert::notes_on(frame);
   notes.insert(notes.end(), on_floats.begin(), on_floats.end());
   if (const std::optional<int> bits = rounding_bits(document.options, output))
-    notes.push_back(note_on_rounding(document.surfaces, frame.origin, *bits));
+    notes.push_back(codec::note_on_rounding(document.surfaces, frame.origin, *bits));
   std::vector<Note> more;
-  if (const Obj* obj = std::get_if<Obj>(&document.source)) {
-    more =
-        output == Format::obj ? note_on_polygons(*obj, unwrapped.front()) : note_on_materials(*obj);
-    if (output != Format::obj && keeps_texcoords(*obj, document.options))
+  if (const obj::Obj* obj = std::get_if<obj::Obj>(&document.source)) {
+    more = output == Format::obj ? obj::note_on_polygons(*obj, unwrapped.front())
+                                 : obj::note_on_materials(*obj);
+    if (output != Format::obj && obj::keeps_texcoords(*obj, document.options))
       notes.push_back({NoteCode::set_chosen,
                        "The new texture coordinates are TEXCOORD_1. TEXCOORD_0 has those of the "
                        "OBJ, so that images of its materials keep fitting. Send texcoord=0 to "
@@ -268,11 +251,11 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
                        "materials no longer fit. Send output=glb, with the files of its materials, "
                        "to keep them in a set of their own."});
   }
-  if (const MeshFile* file = std::get_if<MeshFile>(&document.source))
-    more = note_on_mesh_file(*file, document.format);
+  if (const mesh_files::MeshFile* file = std::get_if<mesh_files::MeshFile>(&document.source))
+    more = mesh_files::note_on_mesh_file(*file, document.format);
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source);
       gltf != nullptr && output != Format::obj)
-    more = side_effects_of_patch(*gltf, unwrapped, output);
+    more = writer::side_effects_of_patch(*gltf, unwrapped, output);
   notes.insert(notes.end(), more.begin(), more.end());
   return notes;
 }

@@ -2,49 +2,19 @@
 // Reads and writes assets. The written document is the one that was read, patched: only texture
 // coordinates are added and, if a vertex lies on a seam, its copies.
 
-#include <cstdint>
-#include <limits>
-#include <map>
 #include <memory>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/asset/base/input.hpp"
 #include "core/mesh/tri_mesh.hpp"
 #include "core/types/asset_options.hpp"
 #include "core/types/file_repair.hpp"
 #include "core/types/note.hpp"
 
 namespace unwrapd::asset {
-
-enum class Format { glb, gltf, obj, stl, ply, off };
-
-/// "glb", "gltf", "obj", "stl", "ply" or "off".
-std::string_view format_name(Format format);
-
-/// The format of the answer to an input, unless another is asked for: its own if that is written,
-/// else GLB. Only GLB, glTF and OBJ are written.
-Format usual_output(Format input);
-
-/// The bytes of a request. No other file or address is ever opened. buffers: a .gltf's external
-/// buffers, or an OBJ's materials and their images, by the URI that the document uses for them.
-struct Input {
-  std::string_view document;
-  std::map<std::string, std::string_view> buffers;
-  std::stop_token stop = {};  ///< of the job; reading checks it, and later writing
-};
-
-inline constexpr std::size_t kNoByteLimit = std::numeric_limits<std::size_t>::max();
-
-/// Checked against counts in the document before anything of their size is allocated.
-struct ReadLimits {
-  std::int64_t max_vertices = 10'000'000;
-  std::int64_t max_faces = 20'000'000;
-  std::size_t max_bytes = kNoByteLimit;                     ///< of memory for a job
-  std::size_t max_unzipped_bytes = std::size_t{256} << 20;  ///< of the files in a zip archive
-};
 
 struct Document;  // the original JSON and buffers, or the OBJ's text; private to asset
 

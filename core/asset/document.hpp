@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/asset/asset.hpp"
-#include "core/asset/gltf.hpp"
-#include "core/asset/mesh_file.hpp"
-#include "core/asset/obj.hpp"
+#include "core/asset/gltf/gltf.hpp"
+#include "core/asset/mesh_files/mesh_file.hpp"
+#include "core/asset/obj/obj.hpp"
 
 namespace unwrapd::asset {
 
@@ -15,7 +15,7 @@ struct Document {
   Format format = Format::glb;
   AssetOptions options;
   std::vector<Surface> surfaces;
-  std::variant<Gltf, Obj, MeshFile> source;
+  std::variant<Gltf, obj::Obj, mesh_files::MeshFile> source;
 };
 
 }  // namespace unwrapd::asset

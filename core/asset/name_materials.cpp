@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/asset/as_size.hpp"
+#include "core/asset/base/as_size.hpp"
 #include "core/asset/document.hpp"
 
 namespace unwrapd::asset {
@@ -30,7 +30,7 @@ void name_materials(Asset& asset) {
   for (Surface& surface : document.surfaces) make_room(surface);
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source))
     return name_gltf_materials(*gltf, document.surfaces);
-  if (const Obj* obj = std::get_if<Obj>(&document.source)) {
+  if (const obj::Obj* obj = std::get_if<obj::Obj>(&document.source)) {
     std::vector<std::string>& names = document.surfaces.front().materials;
     std::copy_n(obj->materials.begin(), std::min(names.size(), obj->materials.size()),
                 names.begin());

@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/asset/as_size.hpp"
-#include "core/asset/elements.hpp"
+#include "core/asset/base/as_size.hpp"
+#include "core/asset/gltf/elements.hpp"
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
 
@@ -134,7 +134,8 @@ std::vector<std::vector<double>> values_of(const Input& input, const Document& d
                                            const AttributeName& name) {
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source))
     return GltfValues(*gltf, document.surfaces, name).read();
-  if (const Obj* obj = std::get_if<Obj>(&document.source)) return {obj_values(*obj, name)};
+  if (const obj::Obj* obj = std::get_if<obj::Obj>(&document.source))
+    return {obj_values(*obj, name)};
   if (document.format == Format::ply) return {ply_values(input, name)};
   refuse_attribute(name, "an " + std::string(document.format == Format::stl ? "STL" : "OFF") +
                              " is read without attributes of its vertices; leave out " +

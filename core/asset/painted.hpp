@@ -22,7 +22,7 @@ struct AttributeName {
 AttributeName attribute_name(std::string_view option, const std::string& given);
 
 /// One value a vertex. Throws Error{invalid_option} if there is no such attribute.
-std::vector<double> obj_values(const Obj& obj, const AttributeName& name);
+std::vector<double> obj_values(const obj::Obj& obj, const AttributeName& name);
 std::vector<double> ply_values(const Input& input, const AttributeName& name);
 
 /// Throws Error{invalid_option} for an attribute that is missing; has: those that there are.

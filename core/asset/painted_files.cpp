@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "core/asset/obj_words.hpp"
+#include "core/asset/base/words.hpp"
+#include "core/asset/mesh_files/ply.hpp"
 #include "core/asset/painted.hpp"
-#include "core/asset/ply.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -38,44 +38,46 @@ std::vector<std::string> properties_of(const AttributeName& name) {
 }
 
 /// What the largest number of a colour counts as 1 of.
-double unit_of(PlyType type) {
-  return type == PlyType::u8 ? 255 : type == PlyType::u16 ? 65535 : 1;
+double unit_of(mesh_files::PlyType type) {
+  return type == mesh_files::PlyType::u8 ? 255 : type == mesh_files::PlyType::u16 ? 65535 : 1;
 }
 
 class PlyValueReader {
  public:
   PlyValueReader(const Input& input, const AttributeName& name)
-      : head_(read_ply_head(input.document, input.stop)),
+      : head_(mesh_files::read_ply_head(input.document, input.stop)),
         values_(input.document, head_, input.stop),
         name_(name),
         wanted_(properties_of(name)) {}
 
   std::vector<double> read() {
-    for (const PlyElement& element : head_.elements) {
+    for (const mesh_files::PlyElement& element : head_.elements) {
       if (element.name == "vertex" && element.count > 0) {
         read_vertices(element);
         break;
       }
       for (std::int64_t i = 0; i < element.count && !element.properties.empty(); ++i)
-        for (const PlyProperty& property : element.properties) values_.skip(property);
+        for (const mesh_files::PlyProperty& property : element.properties) values_.skip(property);
     }
     return std::move(of_vertex_);
   }
 
  private:
-  [[nodiscard]] bool is_wanted(const PlyProperty& property) const {
+  [[nodiscard]] bool is_wanted(const mesh_files::PlyProperty& property) const {
     return !property.count_type && std::ranges::find(wanted_, property.name) != wanted_.end();
   }
 
-  void read_vertices(const PlyElement& element) {
+  void read_vertices(const mesh_files::PlyElement& element) {
     std::vector<std::string> names;
-    for (const PlyProperty& property : element.properties) names.push_back(property.name);
+    for (const mesh_files::PlyProperty& property : element.properties)
+      names.push_back(property.name);
     const auto count = std::ranges::count_if(
-        element.properties, [&](const PlyProperty& property) { return is_wanted(property); });
+        element.properties,
+        [&](const mesh_files::PlyProperty& property) { return is_wanted(property); });
     if (count != std::ssize(wanted_)) refuse_missing(name_, "vertex", names);
     for (std::int64_t i = 0; i < element.count; ++i) {
       double sum = 0;
-      for (const PlyProperty& property : element.properties)
+      for (const mesh_files::PlyProperty& property : element.properties)
         if (is_wanted(property))
           sum += values_.next(property.type) / unit_of(property.type);
         else
@@ -84,8 +86,8 @@ class PlyValueReader {
     }
   }
 
-  PlyHead head_;
-  PlyValues values_;
+  mesh_files::PlyHead head_;
+  mesh_files::PlyValues values_;
   const AttributeName& name_;
   std::vector<std::string> wanted_;
   std::vector<double> of_vertex_;
@@ -93,7 +95,7 @@ class PlyValueReader {
 
 }  // namespace
 
-std::vector<double> obj_values(const Obj& obj, const AttributeName& name) {
+std::vector<double> obj_values(const obj::Obj& obj, const AttributeName& name) {
   std::vector<double> values;
   bool has_colours = false;
   Pace pace(obj.stop);

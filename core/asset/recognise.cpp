@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 
-#include "core/asset/mesh_file.hpp"
-#include "core/asset/obj_words.hpp"
+#include "core/asset/base/pace.hpp"
+#include "core/asset/base/words.hpp"
+#include "core/asset/mesh_files/mesh_file.hpp"
+#include "core/asset/mesh_files/text_reader.hpp"
 #include "core/asset/other_formats.hpp"
-#include "core/asset/pace.hpp"
-#include "core/asset/text_reader.hpp"
 #include "core/base/error.hpp"
 
 namespace unwrapd::asset {
@@ -72,14 +72,14 @@ bool starts_with_solid(std::string_view text) {
 Format recognise(std::string_view file, const std::stop_token& stop) {
   if (file.starts_with("glTF")) return Format::glb;
   if (file.starts_with("ply\n") || file.starts_with("ply\r")) return Format::ply;
-  if (is_binary_stl(file)) return Format::stl;
+  if (mesh_files::is_binary_stl(file)) return Format::stl;
   refuse_other_formats(file);
-  const std::string_view text = file.substr(start_of_text(file));
+  const std::string_view text = file.substr(mesh_files::start_of_text(file));
   Pace pace(stop);
   const std::string_view words = text.substr(skip_spaces(text, 0, pace));
   if (words.starts_with('{')) return Format::gltf;
   if (starts_with_solid(words)) return Format::stl;
-  if (is_off(text)) return Format::off;
+  if (mesh_files::is_off(text)) return Format::off;
   if (looks_like_obj(text, pace)) return Format::obj;
   throw Error(ErrorCode::unknown_format,
               "the file is neither GLB, glTF, OBJ, STL, PLY nor OFF; send one of these");

@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "core/asset/gltf_steps.hpp"
+#include "core/asset/gltf/uris.hpp"
 #include "core/asset/other_formats.hpp"
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"

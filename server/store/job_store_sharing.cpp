@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "core/asset/base64.hpp"
+#include "core/asset/base/base64.hpp"
 #include "server/store/job_rows.hpp"
 #include "server/store/job_store.hpp"
 

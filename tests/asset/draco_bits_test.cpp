@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <random>
 
-#include "core/asset/compress.hpp"
+#include "core/asset/codec/compress.hpp"
 #include "tests/asset/support.hpp"
 
 namespace unwrapd::asset::test {
@@ -69,7 +69,7 @@ double bound_of(const std::vector<ReadPrimitive>& primitives, int bits) {
         low = low.cwiseMin(point);
         high = high.cwiseMax(point);
       }
-  return draco_position_error(low, high, bits);
+  return codec::draco_position_error(low, high, bits);
 }
 
 TEST(DracoBits, PositionsMoveByTheSaidBoundAndNormalsByAQuarterOfADegree) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/asset/mtl.hpp"
+#include "core/asset/obj/mtl.hpp"
 #include "tests/asset/support.hpp"
 
 namespace unwrapd::asset::test {
@@ -222,15 +222,15 @@ TEST(ObjMaterials, AnImageThatManyPathsLeadToIsTakenOnce) {
 }
 
 TEST(Mtl, ReadsWhatExportersWrite) {
-  MtlLibrary library;
+  obj::MtlLibrary library;
   Pace pace({});
-  read_mtl(
+  obj::read_mtl(
       "newmtl a b\r\nKd 0.5\r\nTr 0.25\r\nPr .3\r\nPm 1\r\nmap_Kd C:\\tex\\a.png\r\n"
       "newmtl c\nKd spectral x.rfl\nKd 9 -1 nan\nd -halo 0.5\nnorm -bm inf -clamp on n.png\n"
       "map_d ../up.png\nnewmtl a b\nKd 0 0 0\n",
       pace, library);
   ASSERT_EQ(library.size(), 2U);
-  const MtlMaterial &a = library.at("a b"), &c = library.at("c");
+  const obj::MtlMaterial &a = library.at("a b"), &c = library.at("c");
   EXPECT_EQ(a.colour, (std::array<double, 3>{0.5, 0.5, 0.5}));  // the first of a name counts
   EXPECT_EQ(a.alpha, 0.75);
   EXPECT_EQ(a.roughness, 0.3);
@@ -246,12 +246,12 @@ TEST(Mtl, ReadsWhatExportersWrite) {
 TEST(Mtl, AnyBytesAreRead) {
   std::string text = kMtl;
   for (std::size_t k = 0; k < text.size(); ++k) {
-    MtlLibrary library;
+    obj::MtlLibrary library;
     Pace pace({});
-    read_mtl(text.substr(0, k), pace, library);
+    obj::read_mtl(text.substr(0, k), pace, library);
     std::string broken = text;
     broken[k] = static_cast<char>(k * 37);
-    read_mtl(broken, pace, library);
+    obj::read_mtl(broken, pace, library);
   }
 }
 

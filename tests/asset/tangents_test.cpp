@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "core/asset/tangent_space.hpp"
+#include "core/asset/writer/tangent_space.hpp"
 #include "tests/asset/support.hpp"
 
 namespace unwrapd::asset::test {
@@ -91,8 +91,8 @@ TEST(Tangents, AMirrorWithoutASeamSplitsItsVertices) {
 }
 
 /// A bent sheet with smooth normals and texture coordinates that shear.
-TangentMesh sheet() {
-  TangentMesh mesh;
+writer::TangentMesh sheet() {
+  writer::TangentMesh mesh;
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 6; ++k) {
       mesh.positions.emplace_back(i, k * 0.7, 0.05 * i * i - 0.1 * k * i);
@@ -113,7 +113,7 @@ Vec3 projected(const Vec3& vector, const Vec3& normal) {
 }
 
 /// All triangles at a vertex, by their angles there as the normal sees them.
-Vec3 weighted_mean(const TangentMesh& mesh, Index vertex) {
+Vec3 weighted_mean(const writer::TangentMesh& mesh, Index vertex) {
   const auto at = [](const auto& values, Index i) { return values[static_cast<std::size_t>(i)]; };
   const Vec3 normal = at(mesh.normals, vertex);
   Vec3 sum = Vec3::Zero();
@@ -136,11 +136,11 @@ Vec3 weighted_mean(const TangentMesh& mesh, Index vertex) {
 }
 
 TEST(Tangents, OfASmoothSheetAreMeansByAngles) {
-  const TangentMesh mesh = sheet();
-  const auto tangents = corner_tangents(mesh, {});
+  const writer::TangentMesh mesh = sheet();
+  const auto tangents = writer::corner_tangents(mesh, {});
   for (std::size_t f = 0; f < mesh.faces.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Tangent& t = tangents[f][k];
+      const writer::Tangent& t = tangents[f][k];
       const Vec3 expected = weighted_mean(mesh, mesh.faces[f][k]);
       EXPECT_LT((Vec3(t[0], t[1], t[2]) - expected).norm(), 1e-5);
       EXPECT_EQ(t[3], 1);
@@ -148,8 +148,8 @@ TEST(Tangents, OfASmoothSheetAreMeansByAngles) {
 }
 
 TEST(Tangents, DoNotDependOnHowVerticesAreShared) {
-  const TangentMesh mesh = sheet();
-  TangentMesh soup;
+  const writer::TangentMesh mesh = sheet();
+  writer::TangentMesh soup;
   for (const Triangle& face : mesh.faces) {
     const auto first = static_cast<Index>(soup.positions.size());
     soup.faces.push_back({first, first + 1, first + 2});
@@ -159,15 +159,15 @@ TEST(Tangents, DoNotDependOnHowVerticesAreShared) {
       soup.uv.push_back(mesh.uv[static_cast<std::size_t>(vertex)]);
     }
   }
-  EXPECT_EQ(corner_tangents(mesh, {}), corner_tangents(soup, {}));
+  EXPECT_EQ(writer::corner_tangents(mesh, {}), writer::corner_tangents(soup, {}));
 }
 
 TEST(Tangents, AreUnitVectorsWhereTextureCoordinatesSayNothing) {
-  TangentMesh mesh = sheet();
+  writer::TangentMesh mesh = sheet();
   for (Vec2& uv : mesh.uv) uv = {0.5, 0.5};
   mesh.normals[3] = Vec3::Zero();
-  for (const auto& face : corner_tangents(mesh, {}))
-    for (const Tangent& t : face) EXPECT_NEAR(std::hypot(t[0], t[1], t[2]), 1, 1e-6);
+  for (const auto& face : writer::corner_tangents(mesh, {}))
+    for (const writer::Tangent& t : face) EXPECT_NEAR(std::hypot(t[0], t[1], t[2]), 1, 1e-6);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #include <tiny_gltf.h>
 
-#include "core/asset/read_gltf.hpp"
+#include "core/asset/reader/read_gltf.hpp"
 #include "tests/asset/memory_guard.hpp"
 #include "tests/asset/support.hpp"
 
@@ -140,7 +140,7 @@ std::optional<tinygltf::Model> read_whole(const std::string& file) {
 std::optional<Gltf> read_in_slices(const Input& input) try {
   const bool is_glb = input.document.starts_with("glTF");
   std::vector<Surface> surfaces;
-  Gltf gltf = read_gltf(input, is_glb ? Format::glb : Format::gltf, {}, {}, surfaces);
+  Gltf gltf = reader::read_gltf(input, is_glb ? Format::glb : Format::gltf, {}, {}, surfaces);
   const bool is_plain = gltf.came_as == Compression::none && gltf.spent_views.empty();
   return is_plain ? std::optional(std::move(gltf)) : std::nullopt;
 } catch (const Error&) {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "core/asset/obj.hpp"
-#include "core/asset/pace.hpp"
+#include "core/asset/base/pace.hpp"
+#include "core/asset/obj/obj.hpp"
 
 namespace unwrapd::asset::test {
 namespace {
@@ -26,7 +26,7 @@ double area(const Polygon& polygon) {
 void expect_covered(const Polygon& polygon) {
   std::vector<std::array<Index, 3>> triangles;
   Pace pace({});
-  triangulate(polygon, triangles, pace);
+  obj::triangulate(polygon, triangles, pace);
   ASSERT_EQ(triangles.size(), polygon.size() - 2);
   double sum = 0;
   for (const auto& [a, b, c] : triangles) {

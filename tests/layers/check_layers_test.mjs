@@ -15,7 +15,7 @@ test("rooms include the rooms before them only", () => {
   refuses("core/measure/energy.cpp", '"core/linear/cholesky.hpp"');
   refuses("core/solve/arap/objective.cpp", '"core/pack/pack.hpp"');
   refuses("core/solve/maps/conformal.cpp", '"core/solve/repair/untangle.hpp"');
-  refuses("core/asset/gltf.cpp", '"core/pack/pack.hpp"');
+  refuses("core/asset/gltf/gltf.cpp", '"core/pack/pack.hpp"');
   refuses("core/pack/pack.cpp", '"core/unwrap.hpp"');
   refuses("core/pack/pack.cpp", '"core/segment/segment.hpp"');
   refuses("core/unwrap.cpp", '"core/asset/asset.hpp"');
@@ -99,7 +99,7 @@ test("a library is seen by its own folder only", () => {
   accepts("server/work/png_file.cpp", "<png.h>");
   refuses("api/job.cpp", "<draco/compression/decode.h>");
   accepts("client/http.cpp", "<httplib.h>");
-  accepts("core/asset/gltf.cpp", "<nlohmann/json.hpp>");
+  accepts("core/asset/gltf/gltf.cpp", "<nlohmann/json.hpp>");
   accepts("client/interrupt.cpp", "<thread>");
 });
 

@@ -13,7 +13,7 @@ const read = (path) => readFileSync(join(ROOT, path), "utf8");
 const { options, methods } = JSON.parse(read("api/examples/methods.json"));
 const OPTIONS = options.map(({ name }) => name);
 const METHODS = methods.map(({ name }) => name);
-const FORMATS = read("core/asset/asset.hpp").match(/enum class Format \{([\s\w,]+)\}/)[1].match(/\w+/g);
+const FORMATS = read("core/asset/base/input.hpp").match(/enum class Format \{([\s\w,]+)\}/)[1].match(/\w+/g);
 const FUZZED = FORMATS.filter((name) => name !== "glb"); // its target is gltf
 
 const mediaType = (format) => ({ glb: "model/gltf-binary", gltf: "model/gltf+json" })[format] ?? `model/${format}`;

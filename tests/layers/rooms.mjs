@@ -5,6 +5,8 @@ import { fileURLToPath } from "node:url";
 
 const TERMS = ["core/base", "core/mesh", "core/types"];
 const SOLVING = [...TERMS, "core/linear", "core/measure", "core/solve/base"];
+const ASSET = [...TERMS, "core/asset/base"];
+const DOCUMENT = [...ASSET, "core/asset/gltf"];
 const STORED = ["core/base", "api", "server/base", "server/store"];
 
 /** Folder, duty, the rooms that it may include. */
@@ -29,7 +31,15 @@ export const ROOMS = [
   ["core", "the front door: unwrap(), the list of its steps", [...TERMS, "core/charts", "core/guarantee", "core/pipeline", "core/segment", "core/solve"]],
   ["core/figure", "layouts and previews as SVG and pixels", [...TERMS, "core/measure"]],
   ["core/texture", "reads and writes images, paints textures for a new layout; a separate library", ["core/base", "core/mesh"]],
-  ["core/asset", "reads and writes glTF, Draco, meshopt and OBJ, reads STL, PLY and OFF; a separate library", [...TERMS, "core/json", "core/texture"]],
+  ["core/asset/base", "what all formats are read with: input and limits, bytes, base64, words", ["core/base", "core/mesh"]],
+  ["core/asset/gltf", "a glTF document as a checked model: JSON, accessors, materials, images", [...ASSET, "core/json", "core/texture"]],
+  ["core/asset/codec", "Draco and meshopt: compresses a document, and undoes it", DOCUMENT],
+  ["core/asset/reader", "the steps of reading a glTF", [...DOCUMENT, "core/asset/codec"]],
+  ["core/asset/writer", "writes texture coordinates, tangents and textures into a copy of a glTF", [...DOCUMENT, "core/asset/codec"]],
+  ["core/asset/obj", "reads and writes OBJ and its materials", DOCUMENT],
+  ["core/asset/mesh_files", "reads STL, PLY and OFF", [...ASSET, "core/asset/obj"]],
+  ["core/asset/convert", "writes one format as another", [...DOCUMENT, "core/asset/writer", "core/asset/obj", "core/asset/mesh_files"]],
+  ["core/asset", "the door to files: recognises, reads and writes assets; a separate library", [...DOCUMENT, "core/asset/codec", "core/asset/reader", "core/asset/writer", "core/asset/obj", "core/asset/mesh_files", "core/asset/convert"]],
   ["api/contract", "`openapi.yaml` as JSON", []],
   ["api", "the contract; the tables of options and of errors", [...TERMS, "core/json"]],
   ["client/web", "the pages at `/` and `/docs`, embedded in the program", []],
@@ -39,7 +49,7 @@ export const ROOMS = [
   ["server/http", "the edge: connections, TLS, limits, framing, routing", ["core/base", "api", "server/base"]],
   ["server/outbound", "calls to addresses that clients chose: checked, and made by libcurl", ["core/base", "server/base"]],
   ["server/bucket", "objects in a bucket that speaks the API of Amazon S3", ["core/base", "server/base", "server/outbound"]],
-  ["server/store", "jobs in SQLite or PostgreSQL, their files, quotas, sweeping", ["core/asset", ...STORED, "server/bucket"]],
+  ["server/store", "jobs in SQLite or PostgreSQL, their files, quotas, sweeping", ["core/asset", "core/asset/base", ...STORED, "server/bucket"]],
   ["server/work", "one job from input bytes to output bytes, in its own process", [...TERMS, ...STORED, "core", "core/asset", "core/figure", "core/pipeline"]],
   ["server/jobs", "the queue, fair turns, workers, events", [...STORED, "server/http", "server/work"]],
   ["server/access", "API keys, signed links, upload tickets", [...STORED, "core/figure", "server/http", "server/jobs"]],
@@ -64,11 +74,13 @@ export function roomOf(path) {
   return ROOMS.find((room) => room.folder === folder);
 }
 
-/** Rooms of words that all of core speaks in: they have no namespace of their own. */
+/** Rooms of words that all of core, or all of a room around them, speaks in: no namespace of their own. */
 const COMMON = ["core", ...TERMS];
+const WORDS = ["core/asset/gltf"];
 
 /** The namespace of a room of core or the server: its folders; `base` is that of the room around it. */
 export function namespaceOf(folder) {
+  if (WORDS.includes(folder)) return namespaceOf(folder.slice(0, folder.lastIndexOf("/")));
   const names = COMMON.includes(folder) ? [] : folder.replace(/^core\//, "").split("/");
   return ["unwrapd", ...names.filter((name) => name !== "base")].join("::");
 }

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "core/asset/tangent_space.hpp"
+#include "core/asset/writer/tangent_space.hpp"
 #include "core/texture/codec.hpp"
 
 namespace unwrapd::test {
@@ -47,7 +47,7 @@ SceneFace face_of(const asset::test::Face& read, int material) {
 
 /// What readers do without tangents.
 void compute_tangents(std::vector<SceneFace>& faces) {
-  asset::TangentMesh mesh;
+  asset::writer::TangentMesh mesh;
   for (const SceneFace& face : faces) {
     const auto first = static_cast<Index>(mesh.positions.size());
     mesh.faces.push_back({first, first + 1, first + 2});
@@ -57,7 +57,7 @@ void compute_tangents(std::vector<SceneFace>& faces) {
       mesh.uv.emplace_back(corner.uv.x(), 1 - corner.uv.y());
     }
   }
-  const auto tangents = asset::corner_tangents(mesh, {});
+  const auto tangents = asset::writer::corner_tangents(mesh, {});
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k)
       faces[f].corner[k].tangent = {tangents[f][k][0], tangents[f][k][1], tangents[f][k][2],

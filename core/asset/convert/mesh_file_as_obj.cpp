@@ -1,0 +1,35 @@
+#include "core/asset/base/as_size.hpp"
+#include "core/asset/convert/convert.hpp"
+#include "core/asset/obj/text.hpp"
+
+namespace unwrapd::asset::convert {
+
+std::string mesh_file_as_obj(const mesh_files::MeshFile& file, const Surface& surface,
+                             const UnwrappedSurface& unwrapped) {
+  Pace pace(file.stop);
+  std::string out;
+  for (const Vec3& position : surface.mesh.positions) {
+    pace.add(8);
+    obj::append_vec3(out, "v", position);
+  }
+  for (const Vec2& uv : unwrapped.uv) {
+    pace.add(4);
+    obj::append_vt(out, uv);
+  }
+  for (const Vec3& normal : file.normals) {
+    pace.add(8);
+    obj::append_vec3(out, "vn", normal.allFinite() ? normal : Vec3(0, 0, 0));
+  }
+  for (const Triangle& face : unwrapped.faces) {
+    pace.add(8);
+    out += 'f';
+    for (const Index corner : face) {
+      const Index vertex = unwrapped.source[as_size(corner)];
+      obj::append_obj_corner(out, vertex, corner, file.normals.empty() ? -1 : vertex);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace unwrapd::asset::convert

@@ -1,0 +1,49 @@
+#include "core/asset/obj/text.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace unwrapd::asset::obj {
+namespace {
+
+template <class Number>
+void append_number(std::string& out, Number value) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  out.append(text.data(), result.ptr);
+}
+
+}  // namespace
+
+void append_obj_corner(std::string& out, Index vertex, Index texcoord, Index normal) {
+  out += ' ';
+  append_number(out, vertex + 1);
+  if (texcoord < 0 && normal < 0) return;
+  out += '/';
+  if (texcoord >= 0) append_number(out, texcoord + 1);
+  if (normal < 0) return;
+  out += '/';
+  append_number(out, normal + 1);
+}
+
+/// UVs have the precision of a float, as in every other format. The text is that of the value as a
+/// double, since a reader of doubles gets another value from the shortest text of a float, which
+/// flips triangles a few steps high.
+void append_vt(std::string& out, const Vec2& uv) {
+  out += "vt ";
+  append_number(out, static_cast<double>(static_cast<float>(uv.x())));
+  out += ' ';
+  append_number(out, static_cast<double>(static_cast<float>(uv.y())));
+  out += '\n';
+}
+
+void append_vec3(std::string& out, std::string_view keyword, const Vec3& value) {
+  out += keyword;
+  for (int k = 0; k < 3; ++k) {
+    out += ' ';
+    append_number(out, value[k]);
+  }
+  out += '\n';
+}
+
+}  // namespace unwrapd::asset::obj
