@@ -1,19 +1,11 @@
-// What every stage of reading and writing does is counted, not timed: this program's sources, with
-// those of the library, are compiled so that each basic block calls the function below.
+// What every stage of reading and writing does is counted, not timed.
 #include <gtest/gtest.h>
 
 #include <cstdint>
 
 #include "tests/asset/support.hpp"
+#include "tests/asset/work/block_count.hpp"
 #include "tests/asset/work/families.hpp"
-
-namespace {
-std::uint64_t blocks = 0;
-}
-
-extern "C" [[gnu::no_sanitize_coverage]] void __sanitizer_cov_trace_pc() {  // NOLINT: its name
-  ++blocks;
-}
 
 namespace unwrapd::asset::test {
 namespace {
@@ -27,9 +19,10 @@ using Work = std::map<std::string, double>;
 Work work_of(const MadeFile& file) {
   Work work;
   const auto count = [&](const char* stage, const auto& run) {
-    const std::uint64_t before = blocks;
+    const std::uint64_t before = block_count();
     auto result = run();
-    work[stage] = static_cast<double>(blocks - before) / static_cast<double>(file.bytes.size());
+    work[stage] =
+        static_cast<double>(block_count() - before) / static_cast<double>(file.bytes.size());
     return result;
   };
   Asset asset = count("read", [&] { return read({file.bytes, {}}, {}, file.options); });
@@ -60,9 +53,9 @@ TEST(Work, OnAGltfGrowsAsItsBytes) { expect_linear(gltf_families()); }
 TEST(Work, OnAnObjGrowsAsItsBytes) { expect_linear(obj_families()); }
 
 TEST(Work, IsCounted) {
-  const std::uint64_t before = blocks;
+  const std::uint64_t before = block_count();
   read_file(square().glb());
-  EXPECT_GT(blocks, before + 1000);
+  EXPECT_GT(block_count(), before + 1000);
 }
 
 }  // namespace
