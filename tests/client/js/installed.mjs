@@ -1,4 +1,5 @@
 // The package as its users get it: built, packed, unpacked beside the packages that it works with.
+// JS_PACKAGE is a folder in which client/js/build.mjs has built it; without, it is built here.
 import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, symlinkSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -12,8 +13,9 @@ const build = join(tests, "../client/js/build.mjs");
 export function install() {
   const folder = mkdtempSync(join(tmpdir(), "unwrapd-package-"));
   const own = join(folder, "node_modules/unwrapd-client");
-  execFileSync(process.execPath, [build, join(folder, "built")], { stdio: ["ignore", "ignore", "inherit"] });
-  execFileSync("npm", ["pack", "./built", "--pack-destination", folder], { cwd: folder, stdio: "pipe" });
+  const built = process.env.JS_PACKAGE ?? join(folder, "built");
+  if (!process.env.JS_PACKAGE) execFileSync(process.execPath, [build, built], { stdio: ["ignore", "ignore", "inherit"] });
+  execFileSync("npm", ["pack", built, "--pack-destination", folder], { cwd: folder, stdio: "pipe" });
   mkdirSync(own, { recursive: true });
   execFileSync("tar", ["xf", join(folder, "unwrapd-client-0.1.0.tgz"), "-C", own, "--strip-components=1"]);
   for (const name of ["three", "@gltf-transform", "@types"])

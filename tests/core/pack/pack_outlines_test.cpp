@@ -61,7 +61,7 @@ TEST(PackOutlines, KeepsThePaddingAtEveryEffortAndFillsMoreWithMore) {
   double least = 0;
   for (const Effort effort : {Effort::fast, Effort::balanced, Effort::best}) {
     double all = 0;
-    for (const int count : {2, 7, 20, 40})
+    for (const int count : {2, 7, 20})
       all += expect_apart(stars(count, 8), {.resolution = 512, .padding = 2, .effort = effort});
     EXPECT_GT(all, least);
     least = all;
@@ -90,7 +90,7 @@ TEST(PackOutlines, ManySmallOnesTakeLittleFromFewLargeOnes) {
 
 TEST(PackOutlines, VeryFewFillNearlyAsMuchAsWithTheMostWork) {
   double usual = 0, best = 0;
-  for (int seed = 1; seed <= 8; ++seed)
+  for (int seed = 1; seed <= 4; ++seed)
     for (int count : {2, 3}) {
       const auto islands = stars(count, static_cast<unsigned>(seed));
       usual += fill(islands, pack_alone(islands, {}).placements);

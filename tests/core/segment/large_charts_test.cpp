@@ -72,11 +72,11 @@ TEST(LargeCharts, KeepTheBoundWhereAVerySmallSurfaceHidesTooMuch) {
 
 TEST(LargeCharts, AreTheSameForAnyExecutor) {
   const charts::Charts whole =
-      charts::components_of(surface_of(bench::noisy_body(20'000, 0.25)), {});
+      charts::components_of(surface_of(bench::noisy_body(12'000, 0.25)), {});
   SerialExecutor serial;
   TwoThreads two;
-  const auto one = large_charts(whole.charts.front(), {}, {.faces = 12000}, serial).charts;
-  const auto other = large_charts(whole.charts.front(), {}, {.faces = 12000}, two).charts;
+  const auto one = large_charts(whole.charts.front(), {}, {.faces = 7000}, serial).charts;
+  const auto other = large_charts(whole.charts.front(), {}, {.faces = 7000}, two).charts;
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t k = 0; k < one.size(); ++k) {
     EXPECT_EQ(one[k].face_source, other[k].face_source);
