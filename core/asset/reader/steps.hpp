@@ -1,7 +1,7 @@
 #pragma once
 // The steps of reading a glTF, in their order. Each step refuses faults with an Error that names
-// the place, and relies on the checks of the steps before it. The two compressions are undone in
-// place: after that the document is a plain glTF.
+// the place, and relies on the checks of the steps before it. Between them core/asset/codec undoes
+// the two compressions in place: after that the document is a plain glTF.
 
 #include <vector>
 
