@@ -1,8 +1,7 @@
 // Reads the texture coordinates of the input, corner by corner: primitives that share a surface's
 // vertices need not share these, and an OBJ's vertices have no coordinates of their own.
-#include <limits>
-
 #include "core/asset/base/as_size.hpp"
+#include "core/asset/base/no_uv.hpp"
 #include "core/asset/document.hpp"
 #include "core/asset/reader/steps.hpp"
 #include "core/base/cancel.hpp"
@@ -10,18 +9,15 @@
 namespace unwrapd::asset {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-const CornerUv kNoUv = {Vec2(kNone, kNone), Vec2(kNone, kNone), Vec2(kNone, kNone)};
-
 void read_obj_uvs(const obj::Obj& obj, Surface& surface) {
   const std::vector<Vec2> vt = obj::texcoords_of(obj);
   if (vt.empty()) return;
-  surface.corner_uv.assign(surface.mesh.faces.size(), kNoUv);
-  for (const obj::ObjElement& element : obj.elements)
+  surface.corner_uv.assign(surface.mesh.faces.size(), kNoCornerUv);
+  for (const obj::Element& element : obj.elements)
     for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
       check_cancelled_every(t, obj.stop);
       for (std::size_t i = 0; i < 3; ++i) {
-        const obj::ObjCorner& corner =
+        const obj::Corner& corner =
             obj.corners[element.first_corner + as_size(obj.face_corners[t][i])];
         if (corner.texcoord >= 0 && as_size(corner.texcoord) < vt.size())
           surface.corner_uv[t][i] = vt[as_size(corner.texcoord)];
@@ -31,7 +27,7 @@ void read_obj_uvs(const obj::Obj& obj, Surface& surface) {
 
 void read_mesh_file_uvs(const mesh_files::MeshFile& file, Surface& surface) {
   if (file.uv.empty()) return;
-  surface.corner_uv.assign(surface.mesh.faces.size(), kNoUv);
+  surface.corner_uv.assign(surface.mesh.faces.size(), kNoCornerUv);
   for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t) {
     check_cancelled_every(t, file.stop);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// The text of an OBJ: statements, words, numbers.
+// Statements, words and numbers of the formats that are lines of text: OBJ, MTL, PLY, OFF, STL.
 
 #include <cstdint>
 #include <optional>

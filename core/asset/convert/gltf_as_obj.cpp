@@ -91,8 +91,8 @@ class ObjFromGltf {
   }
 
   void append_corner(const UnwrappedSurface& unwrapped, Index corner, Index normal) {
-    obj::append_obj_corner(out_, vertex_base_ + unwrapped.source[as_size(corner)],
-                           texcoord_base_ + corner, normal);
+    obj::append_indices(out_, vertex_base_ + unwrapped.source[as_size(corner)],
+                        texcoord_base_ + corner, normal);
   }
 
   void write_normals(const Piece& piece, std::size_t accessor) {

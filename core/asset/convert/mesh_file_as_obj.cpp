@@ -25,7 +25,7 @@ std::string mesh_file_as_obj(const mesh_files::MeshFile& file, const Surface& su
     out += 'f';
     for (const Index corner : face) {
       const Index vertex = unwrapped.source[as_size(corner)];
-      obj::append_obj_corner(out, vertex, corner, file.normals.empty() ? -1 : vertex);
+      obj::append_indices(out, vertex, corner, file.normals.empty() ? -1 : vertex);
     }
     out += '\n';
   }

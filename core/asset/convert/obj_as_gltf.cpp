@@ -101,12 +101,12 @@ class Combiner {
 
 bool has_all_normals(const obj::Obj& obj) {
   return !obj.normals.empty() &&
-         std::ranges::all_of(obj.elements, [&](const obj::ObjElement& element) {
+         std::ranges::all_of(obj.elements, [&](const obj::Element& element) {
            const auto corners =
                std::span(obj.corners).subspan(element.first_corner, element.corner_count);
            return element.face_count() == 0 ||
                   std::ranges::all_of(
-                      corners, [](const obj::ObjCorner& c) { return c.normal != obj::kNoNormal; });
+                      corners, [](const obj::Corner& c) { return c.normal != obj::kNoNormal; });
          });
 }
 
@@ -116,11 +116,11 @@ Vertices vertices_of(const obj::Obj& obj, const Surface& surface, const Unwrappe
   const std::vector<Vec2> texcoords =
       keeps_texcoords ? obj::texcoords_of(obj) : std::vector<Vec2>();
   Combiner combiner({surface, unwrapped, obj.normals, texcoords});
-  for (const obj::ObjElement& element : obj.elements)
+  for (const obj::Element& element : obj.elements)
     for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
       check_cancelled_every(t, obj.stop);
       for (std::size_t k = 0; k < 3; ++k) {
-        const obj::ObjCorner& corner =
+        const obj::Corner& corner =
             obj.corners[element.first_corner + as_size(obj.face_corners[t][k])];
         combiner.add(t, k,
                      {has_normals ? corner.normal : obj::kNoNormal,

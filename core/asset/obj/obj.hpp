@@ -18,7 +18,7 @@
 namespace unwrapd::asset::obj {
 
 /// A statement whose corners are rewritten: a face (keyword 'f') or a polyline ('l').
-struct ObjElement {
+struct Element {
   char keyword = 'f';
   std::size_t begin = 0;  ///< bytes of the statement in the text, without comment and line end
   std::size_t end = 0;
@@ -33,7 +33,7 @@ struct ObjElement {
 
 inline constexpr Index kNoNormal = -1, kNoTexcoord = -1;
 
-struct ObjCorner {
+struct Corner {
   Index vertex = 0;
   Index normal = kNoNormal;
   Index texcoord = kNoTexcoord;  ///< as in the file; may name a vt that does not exist
@@ -41,8 +41,8 @@ struct ObjCorner {
 
 struct Obj {
   std::string text;
-  std::vector<ObjElement> elements;  ///< in the order of the text
-  std::vector<ObjCorner> corners;
+  std::vector<Element> elements;  ///< in the order of the text
+  std::vector<Corner> corners;
   std::vector<std::array<Index, 3>>
       face_corners;  ///< [face]: the corners of its element that it uses
   std::vector<std::pair<std::size_t, std::size_t>> texcoord_lines;  ///< their bytes, in order

@@ -33,8 +33,8 @@ bool is_convex(UvMap polygon) {
 
 }  // namespace
 
-PolygonFate polygon_fate(const Obj& obj, const ObjElement& element,
-                         const UnwrappedSurface& unwrapped, std::vector<Index>& texcoords) {
+PolygonFate polygon_fate(const Obj& obj, const Element& element, const UnwrappedSurface& unwrapped,
+                         std::vector<Index>& texcoords) {
   texcoords.assign(element.corner_count, kUnset);
   for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -53,7 +53,7 @@ PolygonFate polygon_fate(const Obj& obj, const ObjElement& element,
 std::vector<Note> note_on_polygons(const Obj& obj, const UnwrappedSurface& unwrapped) {
   std::size_t polygons = 0, cut = 0, folded = 0;
   std::vector<Index> texcoords;
-  for (const ObjElement& element : obj.elements) {
+  for (const Element& element : obj.elements) {
     if (element.face_count() < 2) continue;
     const PolygonFate fate = polygon_fate(obj, element, unwrapped, texcoords);
     ++polygons;

@@ -22,8 +22,8 @@ inline double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// The fate of a face element. texcoords: those of its corners, if it is kept.
-PolygonFate polygon_fate(const Obj& obj, const ObjElement& element,
-                         const UnwrappedSurface& unwrapped, std::vector<Index>& texcoords);
+PolygonFate polygon_fate(const Obj& obj, const Element& element, const UnwrappedSurface& unwrapped,
+                         std::vector<Index>& texcoords);
 
 /// A note on the polygons that write_obj() writes as triangles, with the reason; empty if all stay.
 std::vector<Note> note_on_polygons(const Obj& obj, const UnwrappedSurface& unwrapped);

@@ -119,7 +119,7 @@ class ObjReader {
   }
 
   void read_element(char keyword, Words& words) {
-    ObjElement element{keyword, at_.begin, at_.end, obj_.corners.size(), 0, 0};
+    Element element{keyword, at_.begin, at_.end, obj_.corners.size(), 0, 0};
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       pace_.add(1);
       obj_.corners.push_back(read_corner(word));
@@ -136,8 +136,8 @@ class ObjReader {
   }
 
   /// v, v/vt, v//vn or v/vt/vn; an index may be missing after its slash.
-  [[nodiscard]] ObjCorner read_corner(std::string_view word) {
-    ObjCorner corner;
+  [[nodiscard]] Corner read_corner(std::string_view word) {
+    Corner corner;
     std::string_view rest = word;
     corner.vertex = read_index(rest, surface_.mesh.positions.size());
     const auto take_slash = [&] {
@@ -173,11 +173,11 @@ class ObjReader {
   void check_indices() {
     const auto vertex_count = surface_.mesh.vertex_count();
     const auto normal_count = static_cast<Index>(obj_.normals.size());
-    for (const ObjElement& element : obj_.elements) {
+    for (const Element& element : obj_.elements) {
       pace_.add(1 + element.corner_count);
       at_.begin = element.begin;
       for (std::size_t i = 0; i < element.corner_count; ++i) {
-        const ObjCorner& corner = obj_.corners[element.first_corner + i];
+        const Corner& corner = obj_.corners[element.first_corner + i];
         if (corner.vertex >= vertex_count)
           refuse("vertex " + std::to_string(corner.vertex + 1) + " does not exist: there are " +
                  std::to_string(vertex_count));
@@ -194,9 +194,9 @@ class ObjReader {
     obj_.face_corners.reserve(face_total_);
     surface_.mesh.faces.reserve(face_total_);
     std::vector<Vec3> polygon;
-    for (const ObjElement& element : obj_.elements) {
+    for (const Element& element : obj_.elements) {
       if (element.face_count() == 0) continue;
-      const ObjCorner* corners = &obj_.corners[element.first_corner];
+      const Corner* corners = &obj_.corners[element.first_corner];
       polygon.clear();
       for (std::size_t i = 0; i < element.corner_count; ++i)
         polygon.push_back(surface_.mesh.positions[static_cast<std::size_t>(corners[i].vertex)]);

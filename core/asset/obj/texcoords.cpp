@@ -1,27 +1,25 @@
 #include <charconv>
-#include <limits>
 
+#include "core/asset/base/no_uv.hpp"
 #include "core/asset/obj/obj.hpp"
 #include "core/base/cancel.hpp"
 
 namespace unwrapd::asset::obj {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 /// The two numbers of a vt statement; NaN if they cannot be read.
 Vec2 read_vt(std::string_view line) {
-  Vec2 uv(kNone, 0);
+  Vec2 uv = kNoUv;
   std::size_t at = line.find("vt") + 2;
   for (int k = 0; k < 2; ++k) {
     at = line.find_first_not_of(" \t", at);
     if (at == std::string_view::npos) break;
     if (line[at] == '+') ++at;
     const auto [end, error] = std::from_chars(line.data() + at, line.data() + line.size(), uv[k]);
-    if (error != std::errc()) return Vec2(kNone, kNone);
+    if (error != std::errc()) return kNoUv;
     at = static_cast<std::size_t>(end - line.data());
   }
-  return uv.allFinite() ? uv : Vec2(kNone, kNone);
+  return uv.allFinite() ? uv : kNoUv;
 }
 
 }  // namespace

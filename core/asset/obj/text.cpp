@@ -15,7 +15,7 @@ void append_number(std::string& out, Number value) {
 
 }  // namespace
 
-void append_obj_corner(std::string& out, Index vertex, Index texcoord, Index normal) {
+void append_indices(std::string& out, Index vertex, Index texcoord, Index normal) {
   out += ' ';
   append_number(out, vertex + 1);
   if (texcoord < 0 && normal < 0) return;

@@ -9,7 +9,7 @@
 namespace unwrapd::asset::obj {
 
 /// " v/vt/vn" from indices that count from 0; negative ones are left out.
-void append_obj_corner(std::string& out, Index vertex, Index texcoord, Index normal);
+void append_indices(std::string& out, Index vertex, Index texcoord, Index normal);
 
 void append_vt(std::string& out, const Vec2& uv);
 

@@ -15,7 +15,7 @@ class ObjWriter {
 
   std::string write() {
     out_.reserve(obj_.text.size() + unwrapped_.uv.size() * 42 + obj_.corners.size() * 8);
-    for (const ObjElement& element : obj_.elements) {
+    for (const Element& element : obj_.elements) {
       pace_.add(1 + 3 * element.corner_count);
       keep_until(element.begin);
       if (element.face_count() > 0 && !has_texcoords_) append_all_texcoords();
@@ -48,7 +48,7 @@ class ObjWriter {
     has_texcoords_ = true;
   }
 
-  void write_element(const ObjElement& element) {
+  void write_element(const Element& element) {
     if (element.face_count() == 0) return write_without_texcoords(element);
     if (polygon_fate(obj_, element, unwrapped_, texcoords_) == PolygonFate::kept) {
       out_ += 'f';
@@ -59,12 +59,12 @@ class ObjWriter {
     }
   }
 
-  void write_without_texcoords(const ObjElement& element) {
+  void write_without_texcoords(const Element& element) {
     out_ += element.keyword;
     for (std::size_t i = 0; i < element.corner_count; ++i) append_corner(element, i, kUnset);
   }
 
-  void write_triangles(const ObjElement& element) {
+  void write_triangles(const Element& element) {
     for (std::size_t t = element.first_face; t < element.first_face + element.face_count(); ++t) {
       out_ += t == element.first_face ? "f" : "\nf";
       for (std::size_t k = 0; k < 3; ++k)
@@ -72,9 +72,9 @@ class ObjWriter {
     }
   }
 
-  void append_corner(const ObjElement& element, std::size_t corner, Index texcoord) {
-    const ObjCorner& c = obj_.corners[element.first_corner + corner];
-    append_obj_corner(out_, c.vertex, texcoord, c.normal);
+  void append_corner(const Element& element, std::size_t corner, Index texcoord) {
+    const Corner& c = obj_.corners[element.first_corner + corner];
+    append_indices(out_, c.vertex, texcoord, c.normal);
   }
 
   const Obj& obj_;

@@ -1,7 +1,6 @@
 // Primitives that share a surface's vertices need not share texture coordinates.
-#include <limits>
-
 #include "core/asset/base/as_size.hpp"
+#include "core/asset/base/no_uv.hpp"
 #include "core/asset/gltf/elements.hpp"
 #include "core/asset/gltf/materials.hpp"
 #include "core/asset/reader/steps.hpp"
@@ -10,9 +9,6 @@
 namespace unwrapd::asset::reader {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-const CornerUv kNoUv = {Vec2(kNone, kNone), Vec2(kNone, kNone), Vec2(kNone, kNone)};
-
 /// The accessor of the primitive's texture coordinates, if it has a type that glTF allows.
 std::optional<std::size_t> uv_accessor(const Gltf& gltf, const Primitive& primitive) {
   for (const auto& [semantic, accessor] : primitive.attributes)
@@ -20,14 +16,14 @@ std::optional<std::size_t> uv_accessor(const Gltf& gltf, const Primitive& primit
   return std::nullopt;
 }
 
-Vec2 upwards(const Vec2& uv) { return uv.allFinite() ? Vec2(uv.x(), 1 - uv.y()) : kNoUv[0]; }
+Vec2 upwards(const Vec2& uv) { return uv.allFinite() ? Vec2(uv.x(), 1 - uv.y()) : kNoUv; }
 
 void read_piece(const Gltf& gltf, const Primitive& primitive, const Vec2& scale,
                 std::size_t accessor, Surface& surface) {
   const Piece& piece = gltf.pieces[primitive.piece];
   const std::vector<Index>& number = gltf.vertices[piece.surface];
   const Elements uv(gltf, accessor);
-  surface.corner_uv.resize(surface.mesh.faces.size(), kNoUv);
+  surface.corner_uv.resize(surface.mesh.faces.size(), kNoCornerUv);
   for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
     check_cancelled_every(t, gltf.stop);
     for (std::size_t i = 0; i < 3; ++i)
