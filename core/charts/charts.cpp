@@ -180,7 +180,7 @@ std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
 
 ConnectedSurface connect(const InspectedSurface& in, const SeamRules& seams) {
   const SurfaceNumbers& surface = in.surface;
-  Pairing by_place = pair_welded(in.welded, in.states, seams.stop);
+  Pairing by_place = pair_welded(surface, in.welded, in.states, seams.stop);
   const auto [pieces, was_welded] = choose_pieces(in, by_place, seams);
   require_two_sides(surface, pieces);
   throw_if_cancelled(seams.stop);

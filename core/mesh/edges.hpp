@@ -54,8 +54,9 @@ void sort_by_edge(std::vector<EdgeSide>& sides, Index vertex_count,
 
 /// Pairs the sides of one edge, given as [first, last) of a sorted list. Two half-edges can be
 /// twins if they run in opposite directions and their faces are not one triangle with both
-/// orientations (in double-sided geometry each side is a sheet). They become twins if neither could
-/// be the twin of any other. Returns the number of pairs.
+/// orientations (in double-sided geometry each side is a sheet). They become twins if one of the
+/// two has no other choice, and no third half-edge has one of them as its only choice. Returns the
+/// number of pairs.
 int pair_edge(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Halfedges& out);
 
 inline bool on_one_edge(const EdgeSide& a, const EdgeSide& b) {

@@ -42,6 +42,14 @@ Index only_partner(std::span<const Triangle> faces, std::span<const EdgeSide> si
   return partner;
 }
 
+/// Whether a side other than h has g as its only partner.
+bool is_needed_by_another(std::span<const Triangle> faces, std::span<const EdgeSide> sides, Index g,
+                          Index h) {
+  return std::ranges::any_of(sides, [&](const EdgeSide& side) {
+    return side.halfedge != h && only_partner(faces, sides, side.halfedge) == g;
+  });
+}
+
 /// The boundary half-edge after h: rotates about h's end to the end of the fan.
 Index next_on_boundary(const Halfedges& halfedges, Index h) {
   Index g = next_halfedge(h);
@@ -90,9 +98,10 @@ int pair_edge(std::span<const Triangle> faces, std::span<const EdgeSide> sides, 
   for (const EdgeSide& side : sides) {
     const Index h = side.halfedge;
     const Index g = only_partner(faces, sides, h);
-    if (g == kNoTwin || only_partner(faces, sides, g) != h) continue;
+    if (g == kNoTwin || out.twin[h] == g || is_needed_by_another(faces, sides, g, h)) continue;
     out.twin[h] = g;
-    pairs += h < g;
+    out.twin[g] = h;
+    ++pairs;
   }
   return pairs;
 }

@@ -6,6 +6,7 @@
 #include "core/mesh/seams.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "core/mesh/counting_sort.hpp"
@@ -27,12 +28,43 @@ void open_edge(Halfedges& halfedges, Index h) {
   halfedges.twin[other] = kNoTwin;
 }
 
-/// Pairs the sides of every edge and counts the edges that cannot be paired.
-void pair_all(std::span<const Triangle> faces, const std::vector<EdgeSide>& sides,
-              const std::stop_token& stop, Pairing& out) {
+/// Pairs the sides of an edge of several sheets that are alone on an edge of the surface's own
+/// vertices: bodies that touch have vertices of their own. Returns the number of pairs.
+int pair_by_own_vertices(const SurfaceNumbers& surface, std::span<const Triangle> faces,
+                         std::vector<EdgeSide> sides, Halfedges& out) {
+  for (EdgeSide& side : sides) {
+    const Index a = start_of(surface.faces, side.halfedge);
+    const Index b = end_of(surface.faces, side.halfedge);
+    side = {std::min(a, b), std::max(a, b), side.halfedge};
+  }
+  std::ranges::sort(sides, {}, [](const EdgeSide& side) {
+    return std::array{side.low, side.high, side.halfedge};
+  });
+  int pairs = 0;
+  for_each_run(sides, on_one_edge, [&](const EdgeSide* first, const EdgeSide* last) {
+    if (last - first == 2) pairs += pair_edge(faces, {first, last}, out);
+  });
+  return pairs;
+}
+
+/// Pairs the sides of an edge of several sheets, first by the surface's own vertices.
+int pair_sheets(const SurfaceNumbers& surface, std::span<const Triangle> faces,
+                std::vector<EdgeSide> sides, Halfedges& out) {
+  const int pairs = pair_by_own_vertices(surface, faces, sides, out);
+  std::erase_if(sides, [&](const EdgeSide& side) { return !is_open(out, side.halfedge); });
+  return pairs + pair_edge(faces, sides, out);
+}
+
+/// Pairs the sides of every edge and counts the edges that cannot be paired. faces: those of the
+/// surface, or over welded vertices.
+void pair_all(const SurfaceNumbers& surface, std::span<const Triangle> faces,
+              const std::vector<EdgeSide>& sides, const std::stop_token& stop, Pairing& out) {
   const auto pair = [&](const EdgeSide* first, const EdgeSide* last) {
     const auto count = last - first;
-    if (count == 1 || pair_edge(faces, {first, last}, out.halfedges) > 0) return;
+    if (count == 1) return;
+    const int pairs = count == 2 ? pair_edge(faces, {first, last}, out.halfedges)
+                                 : pair_sheets(surface, faces, {first, last}, out.halfedges);
+    if (pairs > 0) return;
     const Index g = first[0].halfedge, h = first[1].halfedge;
     const bool clash = count == 2 && start_of(faces, g) == start_of(faces, h);
     if (clash) out.clashes.push_back({g, h});
@@ -82,15 +114,15 @@ bool spans_parts(const SurfaceNumbers& surface) {
   return false;
 }
 
-Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
-                    const std::stop_token& stop) {
+Pairing pair_welded(const SurfaceNumbers& surface, std::span<const Triangle> welded,
+                    const FaceStates& states, const std::stop_token& stop) {
   Pairing out{{std::vector<Index>(3 * welded.size(), kNoTwin)}, 0, {}};
   auto sides = edge_sides(
       welded, [&](Index h) { return states.of[face_of(h)] == FaceState::sound; }, stop);
   Index vertex_count = 0;
   for (const EdgeSide& side : sides) vertex_count = std::max(vertex_count, side.high + 1);
   sort_by_edge(sides, vertex_count, stop);
-  pair_all(welded, sides, stop, out);
+  pair_all(surface, welded, sides, stop, out);
   return out;
 }
 
@@ -105,7 +137,7 @@ Pairing pair_keeping_seams(const SurfaceNumbers& surface, std::span<const Triang
   };
   auto sides = edge_sides(faces, counts, stop);
   sort_by_edge(sides, surface.vertex_count, stop);
-  pair_all(faces, sides, stop, out);
+  pair_all(surface, faces, sides, stop, out);
   for (Index t = 0; t < static_cast<Index>(faces.size()); ++t)
     if (states.of[t] == FaceState::collapsed) take_out(welded, t, out.halfedges);
   if (spans_parts(surface)) glue_parts(surface, welded, states, out);

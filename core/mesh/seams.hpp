@@ -23,9 +23,11 @@ struct Pairing {
       clashes;  ///< pairs of half-edges alone on an edge, with the same direction
 };
 
-/// Pairs by position. welded: the surface's faces over welded vertices.
-Pairing pair_welded(std::span<const Triangle> welded, const FaceStates& states,
-                    const std::stop_token& stop = {});
+/// Pairs by position, and the sides of edges of more than two faces by the surface's own vertex
+/// numbers where these tell what goes on into what. welded: the surface's faces over welded
+/// vertices.
+Pairing pair_welded(const SurfaceNumbers& surface, std::span<const Triangle> welded,
+                    const FaceStates& states, const std::stop_token& stop = {});
 
 /// Pairs by the surface's own vertex numbers. Unpaired half-edges of different primitives are then
 /// paired by position if they are alone on an edge. A cut inside a primitive stays open.

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/mesh/edges.hpp"
+#include "core/mesh/weld.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd {
@@ -35,7 +36,12 @@ std::vector<Index> brute_force_twins(const std::vector<Triangle>& faces) {
   std::vector<Index> twin(static_cast<std::size_t>(n), kNoTwin);
   for (Index h = 0; h < n; ++h) {
     const std::vector<Index> mine = partners(h);
-    if (mine.size() == 1 && partners(mine[0]).size() == 1) twin[h] = mine[0];
+    if (mine.size() != 1) continue;
+    const std::vector<Index> others = partners(mine[0]);
+    const auto needs_it = [&](Index g) { return g != h && partners(g).size() == 1; };
+    if (std::ranges::any_of(others, needs_it)) continue;
+    twin[h] = mine[0];
+    twin[mine[0]] = h;
   }
   return twin;
 }
@@ -54,6 +60,18 @@ TEST(Halfedges, EqualTheBruteForcePairingOnRandomFaces) {
     }
     EXPECT_EQ(build_halfedges(faces, vertex_count).twin, brute_force_twins(faces));
   }
+}
+
+TEST(Halfedges, OfTwoCubesOnEachOtherAreThoseOfEachCube) {
+  const TriMesh lower = cube(), upper = moved(cube(), Vec3(0, 0, 1));
+  TriMesh both = merged(std::array{lower, upper});
+  both.faces = renumber(both.faces, weld(both.positions));
+  const Halfedges own = halfedges_of(lower);
+  const Halfedges twins = halfedges_of(both);
+  const auto half = static_cast<std::ptrdiff_t>(own.twin.size());
+  EXPECT_TRUE(std::equal(own.twin.begin(), own.twin.end(), twins.twin.begin()));
+  EXPECT_TRUE(
+      std::none_of(twins.twin.begin() + half, twins.twin.end(), [&](Index h) { return h < half; }));
 }
 
 TEST(Halfedges, TwinsAreMutualAndRunTheOtherWay) {

@@ -27,6 +27,8 @@ Prepared prepared(Surface surface) {
   return p;
 }
 
+Pairing by_place(const Prepared& p) { return pair_welded(p.surface, p.welded, p.states); }
+
 Pairing kept(const Prepared& p) { return pair_keeping_seams(p.surface, p.welded, p.states); }
 
 long open_count(const Pairing& pairing) {
@@ -36,8 +38,7 @@ long open_count(const Pairing& pairing) {
 TEST(Seams, APositionIsOneVertexWhenWelded) {
   const TriMesh mesh = torus(7, 5);
   const Prepared p = prepared(surface_of(soup(mesh)));
-  EXPECT_EQ(pair_welded(p.welded, p.states).halfedges.twin,
-            build_halfedges(mesh.faces, mesh.vertex_count()).twin);
+  EXPECT_EQ(by_place(p).halfedges.twin, build_halfedges(mesh.faces, mesh.vertex_count()).twin);
   EXPECT_EQ(open_count(kept(p)), 3 * mesh.face_count());
 }
 
@@ -61,7 +62,7 @@ TEST(Seams, ACutInsideAPrimitiveStaysOpen) {
   }
   const Prepared p = prepared(surface);
   EXPECT_EQ(open_count(kept(p)), 16 + 4);
-  EXPECT_EQ(open_count(pair_welded(p.welded, p.states)), 16);
+  EXPECT_EQ(open_count(by_place(p)), 16);
   surface.part.back() = 1;  // with a second primitive, too
   EXPECT_EQ(open_count(kept(prepared(surface))), 16 + 4);
 }
@@ -76,7 +77,7 @@ TEST(Seams, TwoSidesOfASheetInTwoPrimitivesAreNotSewnTogether) {
   }
   const Prepared p = prepared(in_parts(mesh, part));
   EXPECT_EQ(open_count(kept(p)), 24);
-  EXPECT_EQ(open_count(pair_welded(p.welded, p.states)), 24);
+  EXPECT_EQ(open_count(by_place(p)), 24);
 }
 
 /// A grid with one inner edge doubled: two needles lie between its copies.
@@ -100,7 +101,7 @@ TriMesh with_collapsed_faces(bool own_vertices) {
 TEST(Seams, TakingACollapsedFaceOutLeavesNoTear) {
   for (bool own_vertices : {false, true}) {
     const Prepared p = prepared(surface_of(with_collapsed_faces(own_vertices)));
-    for (const Pairing& pairing : {kept(p), pair_welded(p.welded, p.states)}) {
+    for (const Pairing& pairing : {kept(p), by_place(p)}) {
       EXPECT_EQ(open_count(pairing), 8 + 6);  // the border, and the faces that are out
       for (Index h = 0; h < Index(pairing.halfedges.twin.size()); ++h) {
         const Index g = pairing.halfedges.twin[h];
@@ -110,6 +111,35 @@ TEST(Seams, TakingACollapsedFaceOutLeavesNoTear) {
       }
     }
   }
+}
+
+/// Eight cubes that fill a larger one, each with vertices of its own.
+TriMesh packed_cubes() {
+  std::vector<TriMesh> all;
+  for (int k = 0; k < 8; ++k) all.push_back(moved(cube(), Vec3(k & 1, k >> 1 & 1, k >> 2 & 1)));
+  return merged(all);
+}
+
+TEST(Seams, BodiesThatTouchAreNotTornApart) {
+  const TriMesh mesh = packed_cubes();
+  const Pairing pairing = by_place(prepared(surface_of(mesh)));
+  EXPECT_EQ(pairing.halfedges.twin, build_halfedges(mesh.faces, mesh.vertex_count()).twin);
+  EXPECT_EQ(pairing.split_edges, 0);
+}
+
+TEST(Seams, AFloorGoesOnUnderAWall) {
+  const TriMesh floor = grid(4, 4);
+  TriMesh wall = floor;  // stands on the middle row of the floor, whose vertices are at its feet
+  for (Vec3& p : wall.positions) p = {p.x(), floor.positions[10].y(), p.y()};
+  const Pairing pairing = by_place(prepared(surface_of(merged(std::array{floor, wall}))));
+  const Halfedges alone = build_halfedges(floor.faces, floor.vertex_count());
+  EXPECT_TRUE(std::equal(alone.twin.begin(), alone.twin.end(), pairing.halfedges.twin.begin()));
+  EXPECT_EQ(open_count(pairing), 2 * 16);
+}
+
+TEST(Seams, VerticesOfEveryFaceTellNothingOfBodies) {
+  const Pairing pairing = by_place(prepared(surface_of(soup(packed_cubes()))));
+  EXPECT_GT(pairing.split_edges, 0);
 }
 
 TEST(Seams, ClosingSlitsClosesLoopsOfTwoAndNoOthers) {
@@ -129,7 +159,7 @@ TEST(Seams, ClosingSlitsClosesLoopsOfTwoAndNoOthers) {
 
 std::optional<Index> one_sided(const TriMesh& mesh) {
   const Prepared p = prepared(surface_of(mesh));
-  const Pairing pairing = pair_welded(p.welded, p.states);
+  const Pairing pairing = by_place(p);
   return one_sided_component(pairing.clashes,
                              topology(corner_vertices(pairing.halfedges).faces, pairing.halfedges));
 }
