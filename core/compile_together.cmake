@@ -34,6 +34,15 @@ function(compile_together target)
   endforeach()
 endfunction()
 
+# compile_for_little_work(FLAGS): of a release, this folder gets these, since nothing in it computes for
+# long. Under a sanitizer it is not optimised at all: that takes longer than its tests would gain.
+macro(compile_for_little_work flags)
+  set(CMAKE_CXX_FLAGS_RELEASE "${flags}")
+  if(UNWRAPD_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O0")
+  endif()
+endmacro()
+
 # precompile(TARGET [HEADER...]): Eigen, what most files take from the standard library, and HEADERs,
 # compiled once for all files of TARGET. Not in the preset dev: there a file that forgets an include
 # does not compile.
