@@ -180,7 +180,7 @@ std::vector<Repair> repairs_of(const FaceStates& states, const Pieces& pieces) {
 
 ConnectedSurface connect(const InspectedSurface& in, const SeamRules& seams) {
   const SurfaceNumbers& surface = in.surface;
-  Pairing by_place = pair_welded(surface, in.welded, in.states, seams.stop);
+  Pairing by_place = pair_welded(surface, in.welded, in.states, in.flat, seams.stop);
   const auto [pieces, was_welded] = choose_pieces(in, by_place, seams);
   require_two_sides(surface, pieces);
   throw_if_cancelled(seams.stop);
@@ -201,15 +201,15 @@ ConnectedSurface connect(const InspectedSurface& in, const SeamRules& seams) {
   return connected;
 }
 
-/// Computes the components of a surface. areas: the result of inspect_areas() for each face;
-/// duplicates are found here.
+/// Computes the components of a surface. areas, flat: see flat_pairs(). Duplicates are found here.
 ConnectedSurface connect_surface(const solve::CacheContext&, const SurfaceNumbers& surface,
                                  std::span<const Index> first_at,
-                                 const std::vector<FaceState>& areas, const SeamRules& seams) {
+                                 const std::vector<FaceState>& areas,
+                                 const std::vector<HalfedgePair>& flat, const SeamRules& seams) {
   const std::vector<Triangle> welded = renumber(surface.faces, first_at);
   FaceStates states{areas, std::vector<Index>(areas.size(), kNoFace)};
   find_duplicates(welded, surface.vertex_count, seams.stop, states);
-  return connect({surface, first_at, welded, states}, seams);
+  return connect({surface, first_at, welded, states, flat}, seams);
 }
 
 Charts placed(const ConnectedSurface& connected, const Surface& surface,
@@ -279,10 +279,11 @@ Charts components_of(const Surface& surface, const SeamRules& seams) {
   const std::vector<Triangle> welded = renumber(surface.mesh.faces, first_at);
   const std::vector<EdgeEnds> kept = kept_edges(seams, first_at, welded);
   const FaceStates states = inspect_areas(surface.mesh, welded, seams.stop);
+  const auto flat = flat_pairs(surface.mesh.positions, welded, states.of, seams.stop);
   throw_if_cancelled(seams.stop);
   const auto pieces =
       solve::cached<connect_surface>(solve::CacheContext{seams.core, seams.stop},
-                                     SurfaceNumbers(surface), first_at, states.of, seams);
+                                     SurfaceNumbers(surface), first_at, states.of, flat, seams);
   return placed(*pieces, surface, welded, kept, seams.stop);
 }
 

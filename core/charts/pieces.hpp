@@ -30,6 +30,7 @@ struct InspectedSurface {
   std::span<const Index> first_at;
   std::span<const Triangle> welded;
   const FaceStates& states;
+  std::span<const HalfedgePair> flat;  ///< see flat_pairs()
 };
 
 /// The pieces that the mode requires, and whether vertices were welded for them. by_place: the

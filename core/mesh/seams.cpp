@@ -28,6 +28,13 @@ void open_edge(Halfedges& halfedges, Index h) {
   halfedges.twin[other] = kNoTwin;
 }
 
+/// How the sides of edges are paired.
+struct Sheets {
+  const SurfaceNumbers& surface;
+  std::span<const Triangle> faces;          ///< those of the surface, or over welded vertices
+  std::span<const HalfedgePair> flat = {};  ///< see flat_pairs()
+};
+
 /// Pairs the sides of an edge of several sheets that are alone on an edge of the surface's own
 /// vertices: bodies that touch have vertices of their own. Returns the number of pairs.
 int pair_by_own_vertices(const SurfaceNumbers& surface, std::span<const Triangle> faces,
@@ -47,30 +54,77 @@ int pair_by_own_vertices(const SurfaceNumbers& surface, std::span<const Triangle
   return pairs;
 }
 
-/// Pairs the sides of an edge of several sheets, first by the surface's own vertices.
-int pair_sheets(const SurfaceNumbers& surface, std::span<const Triangle> faces,
-                std::vector<EdgeSide> sides, Halfedges& out) {
-  const int pairs = pair_by_own_vertices(surface, faces, sides, out);
-  std::erase_if(sides, [&](const EdgeSide& side) { return !is_open(out, side.halfedge); });
-  return pairs + pair_edge(faces, sides, out);
+/// Pairs the open sides of an edge that are a pair of `flat`, which ascends.
+int pair_flat(std::span<const HalfedgePair> flat, std::span<const EdgeSide> sides, Halfedges& out) {
+  int pairs = 0;
+  for (const EdgeSide& side : sides) {
+    const auto found = std::ranges::lower_bound(flat, HalfedgePair{side.halfedge, 0});
+    if (found == flat.end() || found->front() != side.halfedge) continue;
+    const Index other = found->back();
+    if (std::ranges::find(sides, other, &EdgeSide::halfedge) == sides.end()) continue;
+    set_twins(out, side.halfedge, other);
+    ++pairs;
+  }
+  return pairs;
 }
 
-/// Pairs the sides of every edge and counts the edges that cannot be paired. faces: those of the
-/// surface, or over welded vertices.
-void pair_all(const SurfaceNumbers& surface, std::span<const Triangle> faces,
-              const std::vector<EdgeSide>& sides, const std::stop_token& stop, Pairing& out) {
+/// Pairs the sides of an edge of several sheets: by the surface's own vertices, then those that
+/// have no choice, then those that are flat.
+int pair_sheets(const Sheets& in, std::vector<EdgeSide> sides, Halfedges& out) {
+  const auto keep_open = [&] {
+    std::erase_if(sides, [&](const EdgeSide& side) { return !is_open(out, side.halfedge); });
+  };
+  int pairs = pair_by_own_vertices(in.surface, in.faces, sides, out);
+  keep_open();
+  pairs += pair_edge(in.faces, sides, out);
+  keep_open();
+  return pairs + pair_flat(in.flat, sides, out);
+}
+
+/// Pairs the sides of every edge and counts the edges that cannot be paired.
+void pair_all(const Sheets& in, const std::vector<EdgeSide>& sides, const std::stop_token& stop,
+              Pairing& out) {
   const auto pair = [&](const EdgeSide* first, const EdgeSide* last) {
     const auto count = last - first;
     if (count == 1) return;
-    const int pairs = count == 2 ? pair_edge(faces, {first, last}, out.halfedges)
-                                 : pair_sheets(surface, faces, {first, last}, out.halfedges);
+    const int pairs = count == 2 ? pair_edge(in.faces, {first, last}, out.halfedges)
+                                 : pair_sheets(in, {first, last}, out.halfedges);
     if (pairs > 0) return;
     const Index g = first[0].halfedge, h = first[1].halfedge;
-    const bool clash = count == 2 && start_of(faces, g) == start_of(faces, h);
+    const bool clash = count == 2 && start_of(in.faces, g) == start_of(in.faces, h);
     if (clash) out.clashes.push_back({g, h});
     out.split_edges += clash || count > 2;
   };
   for_each_run(sides, on_one_edge, pair, stop);
+}
+
+/// Opens the pairs at edges of more than two faces that have the same ends as another edge there:
+/// sheets that are one around these ends. A list of triangles cannot tell such edges apart. To open
+/// edges divides vertices and joins none, so once is enough.
+void open_coinciding(const std::vector<EdgeSide>& sides, const std::stop_token& stop,
+                     Pairing& out) {
+  std::vector<EdgeSide> crowded;
+  const auto add_if_crowded = [&](const EdgeSide* first, const EdgeSide* last) {
+    if (last - first > 2) crowded.insert(crowded.end(), first, last);
+  };
+  for_each_run(sides, on_one_edge, add_if_crowded, stop);
+  if (crowded.empty()) return;
+  const CornerVertices vertices = corner_vertices(out.halfedges, stop);
+  for (EdgeSide& side : crowded) {
+    const Index a = start_of(vertices.faces, side.halfedge);
+    const Index b = end_of(vertices.faces, side.halfedge);
+    side = {std::min(a, b), std::max(a, b), side.halfedge};
+  }
+  sort_by_edge(crowded, vertices.count, stop);
+  const auto open = [&](const EdgeSide* first, const EdgeSide* last) {
+    const bool is_one =
+        last - first == 2 && out.halfedges.twin[first->halfedge] == first[1].halfedge;
+    if (last - first == 1 || is_one) return;
+    ++out.split_edges;
+    for (const EdgeSide* side = first; side != last; ++side)
+      if (!is_open(out.halfedges, side->halfedge)) open_edge(out.halfedges, side->halfedge);
+  };
+  for_each_run(crowded, on_one_edge, open, stop);
 }
 
 /// Removes a collapsed face: the neighbours across its two long sides become twins.
@@ -115,14 +169,16 @@ bool spans_parts(const SurfaceNumbers& surface) {
 }
 
 Pairing pair_welded(const SurfaceNumbers& surface, std::span<const Triangle> welded,
-                    const FaceStates& states, const std::stop_token& stop) {
+                    const FaceStates& states, std::span<const HalfedgePair> flat,
+                    const std::stop_token& stop) {
   Pairing out{{std::vector<Index>(3 * welded.size(), kNoTwin)}, 0, {}};
   auto sides = edge_sides(
       welded, [&](Index h) { return states.of[face_of(h)] == FaceState::sound; }, stop);
   Index vertex_count = 0;
   for (const EdgeSide& side : sides) vertex_count = std::max(vertex_count, side.high + 1);
   sort_by_edge(sides, vertex_count, stop);
-  pair_all(surface, welded, sides, stop, out);
+  pair_all({surface, welded, flat}, sides, stop, out);
+  open_coinciding(sides, stop, out);
   return out;
 }
 
@@ -137,7 +193,7 @@ Pairing pair_keeping_seams(const SurfaceNumbers& surface, std::span<const Triang
   };
   auto sides = edge_sides(faces, counts, stop);
   sort_by_edge(sides, surface.vertex_count, stop);
-  pair_all(surface, faces, sides, stop, out);
+  pair_all({surface, faces}, sides, stop, out);
   for (Index t = 0; t < static_cast<Index>(faces.size()); ++t)
     if (states.of[t] == FaceState::collapsed) take_out(welded, t, out.halfedges);
   if (spans_parts(surface)) glue_parts(surface, welded, states, out);

@@ -8,6 +8,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/mesh/flat_pairs.hpp"
 #include "core/mesh/halfedges.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/surface_numbers.hpp"
@@ -24,10 +25,11 @@ struct Pairing {
 };
 
 /// Pairs by position, and the sides of edges of more than two faces by the surface's own vertex
-/// numbers where these tell what goes on into what. welded: the surface's faces over welded
-/// vertices.
+/// numbers, or else as flat_pairs() says, where these tell what goes on into what. welded: the
+/// surface's faces over welded vertices.
 Pairing pair_welded(const SurfaceNumbers& surface, std::span<const Triangle> welded,
-                    const FaceStates& states, const std::stop_token& stop = {});
+                    const FaceStates& states, std::span<const HalfedgePair> flat = {},
+                    const std::stop_token& stop = {});
 
 /// Pairs by the surface's own vertex numbers. Unpaired half-edges of different primitives are then
 /// paired by position if they are alone on an edge. A cut inside a primitive stays open.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <set>
 
 #include "core/base/error.hpp"
@@ -107,6 +108,32 @@ TEST(Charts, EveryShapeBecomesDisksInEverySeamMode) {
       checked_charts(mesh, seams);
 }
 
+/// Triangles at random between the points of a small lattice, each of which has two vertices.
+TriMesh tangle(unsigned seed) {
+  std::mt19937 rng(seed);
+  TriMesh mesh;
+  for (int k = 0; k < 24; ++k) mesh.positions.emplace_back(k % 3, k / 3 % 2, k / 6 % 2);
+  while (mesh.faces.size() < 4 + seed % 12) {
+    Triangle face{};
+    for (Index& v : face) v = static_cast<Index>(rng() % 24);
+    if (face[0] % 12 != face[1] % 12 && face[1] % 12 != face[2] % 12 &&
+        face[2] % 12 != face[0] % 12)
+      mesh.faces.push_back(face);
+  }
+  return mesh;
+}
+
+TEST(Charts, SheetsThatMeetAtEdgesAtRandomBecomeDisks) {
+  int answered = 0;
+  for (unsigned seed = 0; seed < 4000; ++seed) try {
+      checked_charts(tangle(seed), SeamMode::none);
+      ++answered;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::not_orientable) << seed;
+    }
+  EXPECT_GT(answered, 1000);
+}
+
 TEST(Charts, WhatIsADiskStaysAsItIs) {
   const TriMesh mesh = random_disk(8, 1);
   const Charts charts = checked_charts(mesh);
@@ -126,6 +153,14 @@ TEST(Charts, HandlesAreCutThoughThereIsAHole) {
   TriMesh mesh = torus(9, 8);
   mesh.faces.erase(mesh.faces.begin() + 20);
   EXPECT_EQ(repair_count(checked_charts(mesh), RepairKind::cut_to_disk), 1);
+}
+
+TEST(Charts, TilesOfAFloorGoOnUnderAWall) {
+  const TriMesh tile = grid(3, 3);
+  TriMesh wall = tile;  // all three meet at the tiles' common border
+  for (Vec3& p : wall.positions) p = {1, p.x(), p.y()};
+  const TriMesh all = merged(std::array{tile, moved(tile, Vec3(1, 0, 0)), wall});
+  EXPECT_EQ(make_charts(surface_of(all), SeamMode::none).charts.size(), 2U);
 }
 
 TEST(Charts, AMoebiusStripIsRefused) {

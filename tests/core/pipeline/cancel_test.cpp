@@ -77,7 +77,7 @@ TEST(Cancel, IsHeardInTopology) {
       {{"weld", [&](Stop stop) { weld(mesh.positions, stop); }},
        {"inspect", [&](Stop stop) { inspect_faces(mesh, mesh.faces, stop); }},
        {"pair", [&](Stop stop) { build_halfedges(mesh.faces, mesh.vertex_count(), stop); }},
-       {"pair welded", [&](Stop stop) { pair_welded(s.surface, mesh.faces, s.states, stop); }},
+       {"pair welded", [&](Stop stop) { pair_welded(s.surface, mesh.faces, s.states, {}, stop); }},
        {"keep seams",
         [&](Stop stop) { pair_keeping_seams(s.surface, mesh.faces, s.states, stop); }},
        {"slits",
