@@ -147,6 +147,19 @@ TEST(Texcoord, OfAnObjIsTheFirst) {
   }
 }
 
+TEST(Texcoord, OfAnObjMayHaveOneNumberACommentOrTwoLines) {
+  const std::string obj =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.5\nvt +.25 \\\n1 0 # and w\nvt one\nvt 1 nan\n"
+      "f 1/1 2/2 3/3\nf 1/1 2/2 3/4\n";
+  Asset asset = read_file(obj);
+  read_uvs(asset);
+  const std::vector<CornerUv>& uv = asset.surfaces()[0].corner_uv;
+  EXPECT_EQ(uv[0][0], Vec2(0.5, 0));
+  EXPECT_EQ(uv[0][1], Vec2(0.25, 1));
+  EXPECT_FALSE(uv[0][2].allFinite());
+  EXPECT_FALSE(uv[1][2].allFinite());
+}
+
 /// Two primitives over the same vertices, of different materials.
 Builder two_materials() {
   Builder b = painted();

@@ -1,24 +1,21 @@
-#include <charconv>
-
 #include "core/asset/base/no_uv.hpp"
+#include "core/asset/base/words.hpp"
 #include "core/asset/obj/obj.hpp"
 #include "core/base/cancel.hpp"
 
 namespace unwrapd::asset::obj {
 namespace {
 
-/// The two numbers of a vt statement; NaN if they cannot be read.
-Vec2 read_vt(std::string_view line) {
-  Vec2 uv = kNoUv;
-  std::size_t at = line.find("vt") + 2;
-  for (int k = 0; k < 2; ++k) {
-    at = line.find_first_not_of(" \t", at);
-    if (at == std::string_view::npos) break;
-    if (line[at] == '+') ++at;
-    const auto [end, error] = std::from_chars(line.data() + at, line.data() + line.size(), uv[k]);
-    if (error != std::errc()) return kNoUv;
-    at = static_cast<std::size_t>(end - line.data());
-  }
+/// The two numbers of a vt statement, of which the second may be left out; kNoUv if they cannot be
+/// read.
+Vec2 read_vt(std::string_view statement) {
+  Words words(statement);
+  words.next();  // "vt"
+  const std::optional<double> u = number_in(words.next());
+  const std::string_view second = words.next();
+  const std::optional<double> v = second.empty() ? std::optional(0.0) : number_in(second);
+  if (!u || !v) return kNoUv;
+  const Vec2 uv(*u, *v);
   return uv.allFinite() ? uv : kNoUv;
 }
 
@@ -27,9 +24,10 @@ Vec2 read_vt(std::string_view line) {
 std::vector<Vec2> texcoords_of(const Obj& obj) {
   std::vector<Vec2> vt;
   vt.reserve(obj.texcoord_lines.size());
-  for (const auto& [begin, end] : obj.texcoord_lines) {
+  for (const auto& [line, next] : obj.texcoord_lines) {
     check_cancelled_every(vt.size(), obj.stop);
-    vt.push_back(read_vt(std::string_view(obj.text).substr(begin, end - begin)));
+    const Statement own = statement_at(obj.text, line);
+    vt.push_back(read_vt(std::string_view(obj.text).substr(own.begin, own.end - own.begin)));
   }
   return vt;
 }
