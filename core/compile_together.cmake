@@ -34,8 +34,8 @@ function(compile_together target)
   endforeach()
 endfunction()
 
-# compile_for_little_work(FLAGS): of a release, this folder gets these, since nothing in it computes for
-# long. Under a sanitizer it is not optimised at all: that takes longer than its tests would gain.
+# compile_for_little_work(FLAGS): compiles this folder with FLAGS in a release build; nothing in it computes
+# for long. Sanitizer builds do not optimise it: the compiler would need more time than its tests gain.
 macro(compile_for_little_work flags)
   set(CMAKE_CXX_FLAGS_RELEASE "${flags}")
   if(UNWRAPD_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
