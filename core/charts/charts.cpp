@@ -194,9 +194,9 @@ ConnectedSurface connect(const InspectedSurface& in, const SeamRules& seams) {
   }
   charts.input = input_report(surface, pieces.topology, was_welded);
   charts.repairs = repairs_of(in.states, pieces);
-  const bool all_are_paired = charts.set_aside.empty();
+  const bool is_by_position = charts.set_aside.empty() && !by_place.pairs_sheets;
   charts.by_position = std::make_shared<const Halfedges>(
-      all_are_paired ? std::move(by_place.halfedges)
+      is_by_position ? std::move(by_place.halfedges)
                      : build_halfedges(in.welded, surface.vertex_count, seams.stop));
   return connected;
 }

@@ -46,11 +46,7 @@ std::optional<double> tolerance_of(const Welding& welding) {
 void renumber_sides(const TriMesh& mesh, std::span<const Index> place, const std::stop_token& stop,
                     Connected& connected) {
   connected.faces = renumber(mesh.faces, place);
-  for (EdgeSide& side : connected.sides) {
-    const Index a = start_of(connected.faces, side.halfedge);
-    const Index b = end_of(connected.faces, side.halfedge);
-    side = {std::min(a, b), std::max(a, b), side.halfedge};
-  }
+  for (EdgeSide& side : connected.sides) side = side_of(connected.faces, side.halfedge);
   std::ranges::sort(connected.sides, {}, &EdgeSide::halfedge);
   sort_by_edge(connected.sides, mesh.vertex_count(), stop);
 }

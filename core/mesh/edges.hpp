@@ -28,6 +28,12 @@ inline Index apex_of(std::span<const Triangle> faces, Index h) {
   return start_of(faces, previous_halfedge(h));
 }
 
+/// h as a side of its edge.
+inline EdgeSide side_of(std::span<const Triangle> faces, Index h) {
+  const auto [low, high] = std::minmax({start_of(faces, h), end_of(faces, h)});
+  return {low, high, h};
+}
+
 inline bool repeats_vertex(const Triangle& face) {
   return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
 }
@@ -40,9 +46,7 @@ std::vector<EdgeSide> edge_sides(std::span<const Triangle> faces, Wanted wanted,
   sides.reserve(3 * faces.size());
   for (Index h = 0; h < static_cast<Index>(3 * faces.size()); ++h) {
     check_cancelled_every(h, stop);
-    if (!wanted(h)) continue;
-    const Index a = start_of(faces, h), b = end_of(faces, h);
-    sides.push_back({std::min(a, b), std::max(a, b), h});
+    if (wanted(h)) sides.push_back(side_of(faces, h));
   }
   return sides;
 }

@@ -28,7 +28,16 @@ void open_edge(Halfedges& halfedges, Index h) {
   halfedges.twin[other] = kNoTwin;
 }
 
-/// How the sides of edges are paired.
+/// The sides of the sound faces, sorted by edge.
+std::vector<EdgeSide> sound_sides(const SurfaceNumbers& surface, std::span<const Triangle> welded,
+                                  const FaceStates& states, const std::stop_token& stop) {
+  auto sides = edge_sides(
+      welded, [&](Index h) { return states.of[face_of(h)] == FaceState::sound; }, stop);
+  sort_by_edge(sides, surface.vertex_count, stop);
+  return sides;
+}
+
+/// What decides how sides are paired.
 struct Sheets {
   const SurfaceNumbers& surface;
   std::span<const Triangle> faces;          ///< those of the surface, or over welded vertices
@@ -39,11 +48,7 @@ struct Sheets {
 /// vertices: bodies that touch have vertices of their own. Returns the number of pairs.
 int pair_by_own_vertices(const SurfaceNumbers& surface, std::span<const Triangle> faces,
                          std::vector<EdgeSide> sides, Halfedges& out) {
-  for (EdgeSide& side : sides) {
-    const Index a = start_of(surface.faces, side.halfedge);
-    const Index b = end_of(surface.faces, side.halfedge);
-    side = {std::min(a, b), std::max(a, b), side.halfedge};
-  }
+  for (EdgeSide& side : sides) side = side_of(surface.faces, side.halfedge);
   std::ranges::sort(sides, {}, [](const EdgeSide& side) {
     return std::array{side.low, side.high, side.halfedge};
   });
@@ -89,6 +94,7 @@ void pair_all(const Sheets& in, const std::vector<EdgeSide>& sides, const std::s
     if (count == 1) return;
     const int pairs = count == 2 ? pair_edge(in.faces, {first, last}, out.halfedges)
                                  : pair_sheets(in, {first, last}, out.halfedges);
+    out.pairs_sheets = out.pairs_sheets || (count > 2 && pairs > 0);
     if (pairs > 0) return;
     const Index g = first[0].halfedge, h = first[1].halfedge;
     const bool clash = count == 2 && start_of(in.faces, g) == start_of(in.faces, h);
@@ -98,9 +104,10 @@ void pair_all(const Sheets& in, const std::vector<EdgeSide>& sides, const std::s
   for_each_run(sides, on_one_edge, pair, stop);
 }
 
-/// Opens the pairs at edges of more than two faces that have the same ends as another edge there:
-/// sheets that are one around these ends. A list of triangles cannot tell such edges apart. To open
-/// edges divides vertices and joins none, so once is enough.
+/// Opens the pairs at an edge of more than two faces whose ends are the same two vertices as those
+/// of another pair or side there, because their sheets are one around both ends: a list of
+/// triangles could not tell them apart. To open a pair divides vertices and joins none, so once is
+/// enough. sides: sorted by edge.
 void open_coinciding(const std::vector<EdgeSide>& sides, const std::stop_token& stop,
                      Pairing& out) {
   std::vector<EdgeSide> crowded;
@@ -109,17 +116,13 @@ void open_coinciding(const std::vector<EdgeSide>& sides, const std::stop_token& 
   };
   for_each_run(sides, on_one_edge, add_if_crowded, stop);
   if (crowded.empty()) return;
+  std::vector<Index>& twin = out.halfedges.twin;
   const CornerVertices vertices = corner_vertices(out.halfedges, stop);
-  for (EdgeSide& side : crowded) {
-    const Index a = start_of(vertices.faces, side.halfedge);
-    const Index b = end_of(vertices.faces, side.halfedge);
-    side = {std::min(a, b), std::max(a, b), side.halfedge};
-  }
+  for (EdgeSide& side : crowded) side = side_of(vertices.faces, side.halfedge);
   sort_by_edge(crowded, vertices.count, stop);
   const auto open = [&](const EdgeSide* first, const EdgeSide* last) {
-    const bool is_one =
-        last - first == 2 && out.halfedges.twin[first->halfedge] == first[1].halfedge;
-    if (last - first == 1 || is_one) return;
+    const bool is_pair = last - first == 2 && twin[first->halfedge] == first[1].halfedge;
+    if (last - first == 1 || is_pair) return;
     ++out.split_edges;
     for (const EdgeSide* side = first; side != last; ++side)
       if (!is_open(out.halfedges, side->halfedge)) open_edge(out.halfedges, side->halfedge);
@@ -171,12 +174,8 @@ bool spans_parts(const SurfaceNumbers& surface) {
 Pairing pair_welded(const SurfaceNumbers& surface, std::span<const Triangle> welded,
                     const FaceStates& states, std::span<const HalfedgePair> flat,
                     const std::stop_token& stop) {
-  Pairing out{{std::vector<Index>(3 * welded.size(), kNoTwin)}, 0, {}};
-  auto sides = edge_sides(
-      welded, [&](Index h) { return states.of[face_of(h)] == FaceState::sound; }, stop);
-  Index vertex_count = 0;
-  for (const EdgeSide& side : sides) vertex_count = std::max(vertex_count, side.high + 1);
-  sort_by_edge(sides, vertex_count, stop);
+  Pairing out{{std::vector<Index>(3 * welded.size(), kNoTwin)}, 0, {}, false};
+  const std::vector<EdgeSide> sides = sound_sides(surface, welded, states, stop);
   pair_all({surface, welded, flat}, sides, stop, out);
   open_coinciding(sides, stop, out);
   return out;
@@ -185,7 +184,7 @@ Pairing pair_welded(const SurfaceNumbers& surface, std::span<const Triangle> wel
 Pairing pair_keeping_seams(const SurfaceNumbers& surface, std::span<const Triangle> welded,
                            const FaceStates& states, const std::stop_token& stop) {
   const std::span<const Triangle> faces = surface.faces;
-  Pairing out{{std::vector<Index>(3 * faces.size(), kNoTwin)}, 0, {}};
+  Pairing out{{std::vector<Index>(3 * faces.size(), kNoTwin)}, 0, {}, false};
   const auto counts = [&](Index h) {
     const FaceState state = states.of[face_of(h)];
     return state == FaceState::sound ||
@@ -196,7 +195,11 @@ Pairing pair_keeping_seams(const SurfaceNumbers& surface, std::span<const Triang
   pair_all({surface, faces}, sides, stop, out);
   for (Index t = 0; t < static_cast<Index>(faces.size()); ++t)
     if (states.of[t] == FaceState::collapsed) take_out(welded, t, out.halfedges);
-  if (spans_parts(surface)) glue_parts(surface, welded, states, out);
+  if (spans_parts(surface)) {
+    glue_parts(surface, welded, states, out);
+    sides = sound_sides(surface, welded, states, stop);
+  }
+  open_coinciding(sides, stop, out);
   return out;
 }
 

@@ -21,7 +21,8 @@ struct Pairing {
   Halfedges halfedges;
   Index split_edges = 0;  ///< non-manifold edges left without twins
   std::vector<std::array<Index, 2>>
-      clashes;  ///< pairs of half-edges alone on an edge, with the same direction
+      clashes;                ///< pairs of half-edges alone on an edge, with the same direction
+  bool pairs_sheets = false;  ///< some twins are on an edge of more than two faces
 };
 
 /// Pairs by position, and the sides of edges of more than two faces by the surface's own vertex

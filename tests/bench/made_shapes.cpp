@@ -98,6 +98,28 @@ TriMesh crowd(double faces, Random& random) {
   return shapes::merged(all);
 }
 
+/// Tiles of a floor, walls on their borders and crates on each other in their middles. Each has
+/// vertices of its own.
+TriMesh kit(double faces, Random& random) {
+  const TriMesh tile = shapes::grid(4, 4, 4, 4), crate = shapes::cube();
+  const auto tiles = std::max(2, static_cast<int>(std::lround(std::sqrt(faces / 76))));
+  std::vector<TriMesh> all;
+  for (int k = 0; k < tiles * tiles; ++k) {
+    const Vec3 at(4 * (k % tiles), 4 * (k / tiles), 0);
+    all.push_back(shapes::moved(tile, at));
+    for (const bool is_along_x : {true, false}) {
+      if (between(random, 0, 1) > .4) continue;
+      TriMesh wall = tile;
+      for (Vec3& p : wall.positions)
+        p = is_along_x ? Vec3(p.x(), 0, .75 * p.y()) : Vec3(0, p.x(), .75 * p.y());
+      all.push_back(shapes::moved(wall, at));
+    }
+    const auto crates = static_cast<int>(random() % 4);
+    for (int c = 0; c < crates; ++c) all.push_back(shapes::moved(crate, at + Vec3(1, 1, c)));
+  }
+  return shapes::merged(all);
+}
+
 }  // namespace
 
 TriMesh made_shape(const std::string& name) {
@@ -117,6 +139,7 @@ TriMesh made_shape(const std::string& name) {
   if (family == "cap") return cap(faces, random);
   if (family == "torus") return torus(faces, random);
   if (family == "crowd") return crowd(faces, random);
+  if (family == "kit") return kit(faces, random);
   if (family == "opened") return opened_body(faces, seed);
   return {};
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <string>
 
 #include "core/base/error.hpp"
 #include "core/measure/seam_length.hpp"
@@ -125,13 +126,21 @@ TriMesh tangle(unsigned seed) {
 
 TEST(Charts, SheetsThatMeetAtEdgesAtRandomBecomeDisks) {
   int answered = 0;
-  for (unsigned seed = 0; seed < 4000; ++seed) try {
-      checked_charts(tangle(seed), SeamMode::none);
-      ++answered;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::not_orientable) << seed;
-    }
-  EXPECT_GT(answered, 1000);
+  for (unsigned seed = 0; seed < 4000; ++seed) {
+    std::mt19937 rng(seed);
+    const TriMesh mesh = tangle(seed);
+    std::vector<Index> part(mesh.faces.size(), 0);
+    if (seed % 2 == 0)
+      for (Index& p : part) p = static_cast<Index>(rng() % 2);
+    const Surface surface = in_parts(mesh, part);
+    for (SeamMode seams : {SeamMode::automatic, SeamMode::keep, SeamMode::none}) try {
+        expect_valid(surface, make_charts(surface, seams), std::to_string(seed));
+        ++answered;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::not_orientable) << seed;
+      }
+  }
+  EXPECT_GT(answered, 3000);
 }
 
 TEST(Charts, WhatIsADiskStaysAsItIs) {
@@ -252,7 +261,10 @@ TEST(Charts, TellTwinsByPositionOfAllFacesWhateverIsSetAside) {
   flat.positions.push_back((flat.positions[0] + flat.positions[1]) / 2);
   flat.faces.push_back({1, 0, flat.vertex_count() - 1});
   const TriMesh whole = shapes::random_disk(6, 2);
-  for (const TriMesh& mesh : {repeated, flat, whole, shapes::soup(whole)})
+  const TriMesh crates =
+      merged(std::array{cube(), moved(cube(), Vec3(1, 0, 0)), moved(cube(), Vec3(0, 1, 0)),
+                        moved(cube(), Vec3(1, 1, 0))});
+  for (const TriMesh& mesh : {repeated, flat, whole, shapes::soup(whole), crates})
     for (const SeamMode mode : {SeamMode::automatic, SeamMode::keep, SeamMode::none}) {
       const Charts charts = components_of(shapes::surface_of(mesh), {mode});
       EXPECT_EQ(charts.by_position->twin, measure::halfedges_by_position(mesh).twin);

@@ -73,15 +73,20 @@ TEST(FlatPairs, RunInOppositeDirections) {
   EXPECT_TRUE(pairs_of(mesh).empty());
 }
 
-TEST(FlatPairs, AreSoughtAmongAFewFacesOnly) {
-  TriMesh fan{{{0, 0, 0}, {0, 0, 1}}, {}};
-  const int count = 40'000;  // each against each would take a minute
-  for (int k = 0; k < count; ++k) {
-    const double turn = 2 * std::numbers::pi * k / count;
-    fan.positions.emplace_back(std::cos(turn), std::sin(turn), 0);
-    fan.faces.push_back({k % 2, 1 - k % 2, k + 2});
+/// Two coplanar faces at an edge, and others between 60 and 120 degrees from both.
+TriMesh fan(int faces) {
+  TriMesh mesh{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}}, {{0, 1, 2}, {1, 0, 3}}};
+  for (int k = 2; k < faces; ++k) {
+    const double turn = std::numbers::pi * (1 + double(k) / faces) / 3;
+    mesh.faces.push_back({k % 2, 1 - k % 2, mesh.vertex_count()});
+    mesh.positions.emplace_back(std::cos(turn), std::sin(turn), 0);
   }
-  EXPECT_TRUE(pairs_of(fan).empty());
+  return mesh;
+}
+
+TEST(FlatPairs, AreSoughtAmongNoMoreThan64Faces) {
+  EXPECT_EQ(pairs_of(fan(64)), (std::vector<HalfedgePair>{{0, 3}}));
+  EXPECT_TRUE(pairs_of(fan(65)).empty());
 }
 
 }  // namespace
