@@ -107,7 +107,7 @@ void try_tighter_bounds(std::span<const Surface> surfaces, UnwrapOptions options
 
 /// The faces as they came in, and the repairs before all others.
 void restore_input(const charts::RepairedSurfaces& repaired, Unwrapped& map) {
-  charts::restore_winding(repaired, map.surfaces);
+  charts::exchange_winding(repaired, map.surfaces);
   std::vector<Repair>& repairs = map.report.repairs;
   repairs.insert(repairs.begin(), repaired.repairs.begin(), repaired.repairs.end());
 }

@@ -116,7 +116,7 @@ RepairedSurfaces repair_surfaces(std::span<const Surface> surfaces, const Weldin
   return repaired;
 }
 
-void restore_winding(const RepairedSurfaces& repaired, std::vector<UnwrappedSurface>& unwrapped) {
+void exchange_winding(const RepairedSurfaces& repaired, std::vector<UnwrappedSurface>& unwrapped) {
   for (std::size_t s = 0; s < unwrapped.size(); ++s)
     for (std::size_t t = 0; t < repaired.turned[s].size(); ++t)
       if (repaired.turned[s][t] != 0) std::swap(unwrapped[s].faces[t][1], unwrapped[s].faces[t][2]);

@@ -27,7 +27,8 @@ struct RepairedSurfaces {
 RepairedSurfaces repair_surfaces(std::span<const Surface> surfaces, const Welding& welding,
                                  const std::stop_token& stop = {});
 
-/// Gives the faces that were turned the order of corners that they have in the file.
-void restore_winding(const RepairedSurfaces& repaired, std::vector<UnwrappedSurface>& unwrapped);
+/// Exchanges the second and third corner of the faces that were turned: from the winding of the
+/// repaired surfaces to that of the file, or back.
+void exchange_winding(const RepairedSurfaces& repaired, std::vector<UnwrappedSurface>& unwrapped);
 
 }  // namespace unwrapd::charts

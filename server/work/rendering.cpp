@@ -14,6 +14,7 @@
 #include "core/figure/layout_svg.hpp"
 #include "core/figure/preview.hpp"
 #include "core/pipeline/analyse.hpp"
+#include "core/pipeline/as_mapped.hpp"
 #include "server/work/png_file.hpp"
 #include "server/work/run_job.hpp"
 #include "server/work/uv_file.hpp"
@@ -93,18 +94,20 @@ int pixels_of(const Picture& picture, const PageSize& page) {
               "/size");
 }
 
-std::string draw_layout(const Picture& picture, const asset::Asset& asset, const Pages& pages,
-                        Surfaces unwrapped, const std::stop_token& stop) {
+std::string draw_layout(const Picture& picture, const asset::Asset& asset,
+                        const UnwrapOptions& options, const Pages& pages, Surfaces unwrapped,
+                        const std::stop_token& stop) {
   figure::LayoutLook look = picture.page > 0 ? look_at_page(picture, pages, unwrapped)
                                              : look_at_all(picture, pages, unwrapped);
   look.legend = picture.legend;
   look.background = picture.background;
   look.wireframe = picture.wireframe;
   look.numbers = picture.numbers;
+  const auto repaired = pipeline::as_mapped(asset.surfaces(), options, unwrapped, stop);
   if (picture.kind == PictureKind::layout_svg)
-    return figure::layout_svg(asset.surfaces(), unwrapped, look, stop);
+    return figure::layout_svg(repaired.surfaces, unwrapped, look, stop);
   const int size = pixels_of(picture, pages.size);
-  return encode_png(figure::layout_image(asset.surfaces(), unwrapped, look, size, stop));
+  return encode_png(figure::layout_image(repaired.surfaces, unwrapped, look, size, stop));
 }
 
 std::string draw_preview(const Picture& picture, const asset::Asset& asset, const Pages& pages,
@@ -152,10 +155,12 @@ std::string render(const Rendering& rendering, const RenderingInput& input,
       asset::read(input.asset, read_limits(input.record, limits), options.asset);
   Surfaces unwrapped = decode_uvs(input.uvs);
   if (rendering.picture) {
-    const auto draw =
-        rendering.picture->kind == PictureKind::preview_png ? &draw_preview : &draw_layout;
-    return draw(*rendering.picture, asset, pages_of(options, input.report), std::move(unwrapped),
-                input.asset.stop);
+    const Pages pages = pages_of(options, input.report);
+    const std::stop_token& stop = input.asset.stop;
+    if (rendering.picture->kind == PictureKind::preview_png)
+      return draw_preview(*rendering.picture, asset, pages, std::move(unwrapped), stop);
+    return draw_layout(*rendering.picture, asset, options.unwrap, pages, std::move(unwrapped),
+                       stop);
   }
   if (rendering.format) return asset::write(asset, unwrapped, *rendering.format);
   return api::result_json(api::Json::parse(input.report), asset.surfaces(), unwrapped);

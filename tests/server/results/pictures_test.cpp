@@ -63,6 +63,24 @@ TEST_F(Pictures, HaveTheSizeAndTheColouringAskedFor) {
   EXPECT_EQ(pngs.size(), 4U);
 }
 
+/// Two faces of a square, wound against each other.
+TEST_F(Pictures, ShowFlipsThatTheReportCounts) {
+  start();
+  const std::string square =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+      "f 1/1 2/2 3/3\nf 1/1 4/4 3/3\n";
+  for (const auto& [query, flipped] : {std::pair{"", 0}, std::pair{"?measure_only=true", 1}}) {
+    const auto answer = client().Post("/v1/jobs" + std::string(query), {{"Prefer", "wait=60"}},
+                                      square, "model/obj");
+    const std::string id = api::Json::parse(answer->body).at("id");
+    await_state(id, "succeeded");
+    const api::Json report = api::Json::parse(get(id, "report")->body);
+    EXPECT_EQ(report.at("distortion").at("flipped"), flipped);
+    const std::string layout = get(id, "layout.svg?legend=0")->body;
+    EXPECT_EQ(layout.find("#ff2a4d") != std::string::npos, flipped > 0) << query;
+  }
+}
+
 TEST_F(Pictures, AreDrawnOnceAndKeptAtTheUsualSizesOnly) {
   start();
   const std::string id = succeeded();

@@ -193,7 +193,8 @@ export class Session {
     }
     const {width, height} = report.page;
     const what = this.#viewing.result(model, {
-      aspect: width / height, pages: report.pages, mayOverlap: kind !== 'draft' && report.overlaps !== 0, ofAny: Boolean(report.options.repack_only),
+      aspect: width / height, pages: report.pages, isTurned: report.repairs.some((repair) => repair.kind === 'faces_turned'),
+      mayOverlap: kind !== 'draft' && report.overlaps !== 0, ofAny: Boolean(report.options.repack_only),
       asset: kind !== 'draft' && /\.(glb|gltf)$/i.test(name) ? () => loadAsset(job, lambda) : undefined,
     });
     if (kind !== 'draft') {

@@ -29,6 +29,8 @@ function resolved(name: string): string {
 export interface Result {
   aspect: number;
   pages: number;
+  /** Whether faces were turned that the file winds against others. */
+  isTurned: boolean;
   /** Whether triangles overlap, or nobody has looked. */
   mayOverlap: boolean;
   /** Whether those of different islands may. */
@@ -104,10 +106,11 @@ export class Viewing {
   }
 
   /** What a job made of it; the view stays if it is the same mesh. */
-  result(model: Model, {aspect, pages, mayOverlap, ofAny, asset}: Result): Shown {
+  result(model: Model, {aspect, pages, isTurned, mayOverlap, ofAny, asset}: Result): Shown {
     const last = this.#after ?? this.#before;
     const surface = isSame(last?.surface, model) ? last!.surface : surfaceOf(model);
-    this.#after = shown(surface, mapped(surface, uvOf(model, 0)!, surface === last?.surface ? last.map : undefined), aspect, pages);
+    const map = mapped(surface, uvOf(model, 0)!, surface === last?.surface ? last.map : undefined);
+    this.#after = shown(surface, map, aspect, pages, isTurned);
     const before = this.#before?.skin;
     if (asset ?? before) this.#after.skin = once(async () => sameFaces(await this.#skinOf(asset), surface) ?? sameFaces(await before?.(), surface));
     if (mayOverlap) this.#after.overlapping = overlappingFaces(this.#after.map!, ofAny);

@@ -20,7 +20,7 @@ export function uvOf(model: Model, set: number): Float32Array | undefined {
 }
 
 /** Whether the faces on both sides have the same UVs at both ends of the edge. */
-function meets(surface: Surface, uv: Float32Array, h: number, twin: number): boolean {
+export function meets(surface: Surface, uv: Float32Array, h: number, twin: number): boolean {
   const same = (a: number, b: number) => uv[2 * a] === uv[2 * b] && uv[2 * a + 1] === uv[2 * b + 1];
   const isAlong = surface.points[h] === surface.points[twin]; // faces wound against each other
   return isAlong ? same(h, twin) && same(next(h), next(twin)) : same(h, next(twin)) && same(next(h), twin);

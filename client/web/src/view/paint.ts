@@ -1,6 +1,7 @@
 // What colours show, for every corner of a surface.
 import type {Mapped} from '../mesh/islands.js';
 import {type Stretches, stretches} from '../mesh/distortion.js';
+import {folds} from '../mesh/folds.js';
 import type {Surface} from '../mesh/surface.js';
 import type {Skin} from './skin.js';
 import {AREA_SCALE, type Rgb, type Scale, WORSE_SCALE, chartColour, rgb} from './colours.js';
@@ -25,8 +26,10 @@ export interface Shown {
   pages: number;
 }
 
-export function shown(surface: Surface, map: Mapped | undefined, aspect = 1, pages = 1): Shown {
+/** isTurned: faces of the file that are wound against others were turned before they were mapped. */
+export function shown(surface: Surface, map: Mapped | undefined, aspect = 1, pages = 1, isTurned = false): Shown {
   const figures = map && stretches(surface.positions, map.uv, aspect);
+  if (isTurned) figures!.flipped = folds(surface, map!, figures!);
   return {surface, map, figures, aspect, pages};
 }
 
