@@ -15,6 +15,7 @@
 #include "core/guarantee/keep_guarantee.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/pipeline/lambda_order.hpp"
+#include "core/pipeline/settle_parts.hpp"
 #include "core/solve/constrain_chart.hpp"
 #include "core/solve/hybrid_energy.hpp"
 
@@ -73,6 +74,7 @@ class ChartSolver {
     guarantee::GuaranteedMap kept =
         guarantee::keep_guarantee(job_.chart, disk_, found.solution.uv, rules);
     found.parts = scale_parts(disk_, std::move(kept), constraints_, found.solution, executor_);
+    settle_parts(options_, lambda, disk_.stop, executor_, found.parts);
   }
 
   const ChartJob& job_;

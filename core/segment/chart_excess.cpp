@@ -49,18 +49,26 @@ ExcessDistortion excess_in(const solve::Disk& disk, const UvMap& uv, Executor& e
 
 }  // namespace
 
+ExcessDistortion excess_in_space(const charts::Chart& chart, Executor& executor,
+                                 const std::stop_token& stop) {
+  try {
+    throw_if_cancelled(stop);
+    const solve::Disk disk = solve::make_disk(chart.mesh, chart.loops, stop);
+    return excess_in(disk, moved_on(disk, executor, chart.start), executor);
+  } catch (const Error&) {
+    throw_if_cancelled(stop);
+    return {};
+  }
+}
+
 ExcessDistortion chart_excess(std::span<const charts::Chart> charts, Executor& executor,
                               const std::stop_token& stop) {
   ExcessDistortion total;
   double area = 0;
-  for (const charts::Chart& chart : charts) try {
-      throw_if_cancelled(stop);
-      area += measure::surface_area(chart.mesh);
-      const solve::Disk disk = solve::make_disk(chart.mesh, chart.loops, stop);
-      total += excess_in(disk, moved_on(disk, executor, chart.start), executor);
-    } catch (const Error&) {
-      throw_if_cancelled(stop);
-    }
+  for (const charts::Chart& chart : charts) {
+    total += excess_in_space(chart, executor, stop);
+    area += measure::surface_area(chart.mesh);
+  }
   return {total.angle / area, total.area / area};
 }
 

@@ -18,18 +18,6 @@ namespace {
 
 constexpr double kShareOfStandIn = 0.25;  // of the work, on the first stand-in
 
-/// What a chart of a component has of the component's creases: one a half-edge.
-std::vector<char> crease_of(const charts::Chart& component, const charts::Chart& chart) {
-  std::vector<char> crease;
-  if (component.crease.empty()) return crease;
-  for (const Index face : chart.face_source) {
-    const auto at = std::ranges::lower_bound(component.face_source, face);
-    const auto h = component.crease.begin() + 3 * (at - component.face_source.begin());
-    crease.insert(crease.end(), h, h + 3);
-  }
-  return crease;
-}
-
 SeamsOfCharts seams_of(const std::vector<charts::Chart>& charts) {
   SeamsOfCharts seams{charts.size(), 0};
   for (const charts::Chart& chart : charts) seams.length += weighted_boundary(chart);
@@ -97,12 +85,9 @@ class ComponentSearch {
         best = &own;
     if (best != nullptr) return *best;
     const SplitChart split = [&](const charts::Chart& chart, double bound) {
-      charts::Chart alone = chart;
-      alone.crease = crease_of(component_, chart);
-      SegmentRules parts = rules;
+      SegmentRules parts = rules_of_chart(rules, component_, chart);
       parts.max_distortion = bound;
-      parts.page_area *= measure::surface_area(component_.mesh) / measure::surface_area(chart.mesh);
-      return searched_parts(alone, parts);
+      return searched_parts(as_component(component_, chart), parts);
     };
     return tighten(std::move(looser), rules.max_distortion, rules.most_regions, split, executor_,
                    rules.stop);

@@ -13,6 +13,8 @@ struct MappedRegion {
   ExcessDistortion excess;  ///< of that map
   double area = 0;          ///< of the surface's 1
   bool is_sound = false;    ///< its map is; what is not sound merges with nothing
+
+  [[nodiscard]] double mean_excess() const { return excess.worst() / area; }
 };
 
 struct Joined {

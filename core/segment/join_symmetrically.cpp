@@ -19,7 +19,6 @@ namespace unwrapd::segment {
 namespace {
 
 constexpr double kNoLimit = 1e6;
-constexpr double kCapOfOneRegion = 4;  // in shares of what is allowed of all
 
 class SymmetricPartition {
  public:
@@ -213,7 +212,7 @@ class SymmetricPartition {
   }
 
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b) const {
-    return joiner_.join(a, b, open_, kCapOfOneRegion * budget_, {.stop = stop_});
+    return joiner_.join(a, b, open_, kMostOfOneRegion * budget_, {.stop = stop_});
   }
 
   /// Whether the slits are their own image, and the bound holds with this excess of the parts more.

@@ -13,6 +13,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/measure/rest_triangle.hpp"
 #include "core/segment/chart_excess.hpp"
 #include "core/segment/coarsen.hpp"
 #include "core/segment/region_charts.hpp"
@@ -77,6 +78,7 @@ class Search {
     std::vector<charts::Chart> charts;
     ExcessDistortion small, large;  ///< on either surface, over its area
     SeamsOfCharts seams;            ///< weighted_boundary() of all charts
+    std::vector<double> excess;     ///< of each chart over its area, on the large surface
   };
 
   std::vector<charts::Chart> loosened(Found best) {
@@ -106,11 +108,14 @@ class Search {
     begin(steps_.size() - 1, false, kFirstShare);
     last_ = on_small(excess);
     Found found = on_large(segmentation_->first(last_));
-    if (!misses(found, excess)) return found;
-    hide_more(found, excess);
-    begin(steps_.size() - 1, false, 1);
-    last_ = on_small(excess);
-    return on_large(segmentation_->first(last_));
+    if (misses(found, excess)) {
+      hide_more(found, excess);
+      begin(steps_.size() - 1, false, 1);
+      last_ = on_small(excess);
+      found = on_large(segmentation_->first(last_));
+    }
+    split_distorted(found, excess);
+    return found;
   }
 
   /// Nothing where there are no other charts, or they do not keep the bound; then more is kept from
@@ -121,9 +126,12 @@ class Search {
     last_ = on_small(excess);
     if (!segments) return std::nullopt;
     Found found = on_large(*segments);
-    if (!misses(found, excess)) return found;
-    hide_more(found, excess);
-    return std::nullopt;
+    if (misses(found, excess)) {
+      hide_more(found, excess);
+      return std::nullopt;
+    }
+    split_distorted(found, excess);
+    return found;
   }
 
   /// The work up to the share `end` begins: a segmentation of the small surface.
@@ -138,11 +146,56 @@ class Search {
   }
 
   Found on_large(const Segments& segments) {
-    Found found{region_charts(component_, coarse_, segments, rules_.stop), segments.excess, {}, {}};
-    found.large = chart_excess(found.charts, executor_, rules_.stop);
-    found.seams.charts = found.charts.size();
-    for (const charts::Chart& chart : found.charts) found.seams.length += weighted_boundary(chart);
+    Found found{
+        region_charts(component_, coarse_, segments, rules_.stop), segments.excess, {}, {}, {}};
+    double area = 0;
+    for (const charts::Chart& chart : found.charts) {
+      const ExcessDistortion own = excess_in_space(chart, executor_, rules_.stop);
+      const double own_area = measure::surface_area(chart.mesh);
+      found.excess.push_back(own_area > 0 ? own.worst() / own_area : 0);
+      found.large += own;
+      area += own_area;
+    }
+    found.large = {found.large.angle / area, found.large.area / area};
+    found.seams = seams_on_large(found.charts);
     return found;
+  }
+
+  [[nodiscard]] static SeamsOfCharts seams_on_large(const std::vector<charts::Chart>& charts) {
+    SeamsOfCharts seams{charts.size(), 0};
+    for (const charts::Chart& chart : charts) seams.length += weighted_boundary(chart);
+    return seams;
+  }
+
+  /// Charts that are distorted beyond what one may have, since the small surface hid it, are
+  /// segmented as they are. Rejected: halving them, which finds no sound halves for a third.
+  void split_distorted(Found& found, double excess) const {
+    if (is_rough_) return;
+    const double most = kMostOfOneRegion * excess + segmentation_->forced_excess();
+    std::vector<charts::Chart> all;
+    for (std::size_t k = 0; k < found.charts.size(); ++k) {
+      charts::Chart& chart = found.charts[k];
+      const auto others = static_cast<Index>(all.size() + found.charts.size() - k - 1);
+      std::vector<charts::Chart> parts;
+      if (found.excess[k] > most && others + 1 < rules_.most_regions)
+        parts = parts_of(chart, excess, rules_.most_regions - others);
+      if (parts.empty()) parts.push_back(std::move(chart));
+      for (charts::Chart& part : parts) all.push_back(std::move(part));
+    }
+    found.charts = std::move(all);
+    found.seams = seams_on_large(found.charts);
+  }
+
+  /// None where the chart has too many faces for that.
+  [[nodiscard]] std::vector<charts::Chart> parts_of(const charts::Chart& chart, double excess,
+                                                    Index most) const {
+    if (chart.mesh.face_count() > search_extent(rules_.effort).second.beyond) return {};
+    SegmentRules rules = rules_of_chart(rules_, component_, chart);
+    rules.max_distortion = std::min(2 + excess, kDefaultDistortion);
+    rules.most_regions = most;
+    rules.on_progress = {};
+    const charts::Chart alone = as_component(component_, chart);
+    return region_charts(alone, segment(make_segmentation_mesh(alone), rules, executor_));
   }
 
   /// What the small surface may have where the large one may have so much. Rounded as a bound of

@@ -2,11 +2,13 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/base/cancel.hpp"
 #include "core/charts/seam_weight.hpp"
 #include "core/charts/split_chart.hpp"
+#include "core/measure/rest_triangle.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/segment/transfer_seams.hpp"
 
@@ -91,6 +93,24 @@ double boundary_by(const charts::Chart& chart, std::span<const double> avoid) {
 double boundary_length(const charts::Chart& chart) { return boundary_by(chart, {}); }
 
 double weighted_boundary(const charts::Chart& chart) { return boundary_by(chart, chart.avoid); }
+
+charts::Chart as_component(const charts::Chart& component, const charts::Chart& chart) {
+  charts::Chart alone = chart;
+  alone.crease.clear();
+  if (component.crease.empty()) return alone;
+  for (const Index face : chart.face_source) {
+    const auto at = std::ranges::lower_bound(component.face_source, face);
+    const auto h = component.crease.begin() + 3 * (at - component.face_source.begin());
+    alone.crease.insert(alone.crease.end(), h, h + 3);
+  }
+  return alone;
+}
+
+SegmentRules rules_of_chart(SegmentRules rules, const charts::Chart& component,
+                            const charts::Chart& chart) {
+  rules.page_area *= measure::surface_area(component.mesh) / measure::surface_area(chart.mesh);
+  return rules;
+}
 
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments) {
   const auto [uv, seam] = seamed(component.halfedges, segments);

@@ -16,6 +16,13 @@ double boundary_length(const charts::Chart& chart);
 /// The same by charts::seam_weight().
 double weighted_boundary(const charts::Chart& chart);
 
+/// A chart of a component as one of its own, with what it has of the component's creases.
+charts::Chart as_component(const charts::Chart& component, const charts::Chart& chart);
+
+/// The rules for a component as they are for one of its charts.
+SegmentRules rules_of_chart(SegmentRules rules, const charts::Chart& component,
+                            const charts::Chart& chart);
+
 /// The regions of a component, each with its map for a start.
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments);
 

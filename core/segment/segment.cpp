@@ -23,7 +23,6 @@ namespace {
 
 constexpr double kAnyExcess = 1e6, kFarWeight = 10;  // beyond the bound, for a number of regions
 constexpr double kFacesOfQuick = 20, kQuickWeight = 1;
-constexpr double kCapOfOnePatch = 4;  // in shares of what is allowed of all
 constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
 constexpr std::array kFastSteps = {2.5, 5.0, 10.0};
 constexpr int kDecades = 4;
@@ -114,7 +113,7 @@ std::optional<Segments> SurfaceSegmentation::loosen(double excess) {
 
 MergeSettings SurfaceSegmentation::settings_for(double excess) const {
   const double budget = kMarginOfExcess * excess;
-  MergeSettings settings{.budget = budget + forced_, .cap = kCapOfOnePatch * budget};
+  MergeSettings settings{.budget = budget + forced_, .cap = kMostOfOneRegion * budget};
   settings.page_area = rules_.page_area;
   return settings;
 }

@@ -18,6 +18,9 @@ namespace unwrapd::segment {
 /// Of the excess allowed: solving on may shift some between D_angle and D_area.
 inline constexpr double kMarginOfExcess = 0.97;
 
+/// The excess of one region over its area, at most, in shares of what is allowed of all.
+inline constexpr double kMostOfOneRegion = 4;
+
 /// Is told the share of the work that is done, [0, 1]; may be empty.
 using OnProgress = std::function<void(Stage, double)>;
 

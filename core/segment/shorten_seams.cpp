@@ -107,7 +107,7 @@ class Shortening {
     Chain seen_from_b;
     for (const Index h : row) seen_from_b.push_back(twin(h));
     const Region both = beside(surface_, a.region, b.region, seen_from_b);
-    const double most = (a.excess + b.excess).worst();
+    const double most = std::max({settings_.cap, a.mean_excess(), b.mean_excess()});
     std::array<MappedRegion, 2> now;
     ExcessDistortion after = total_ - a.excess - b.excess;
     const std::size_t smaller = sides[1].size() < sides[0].size() ? 1 : 0;
@@ -152,7 +152,7 @@ class Shortening {
     return {std::move(left), std::move(right)};
   }
 
-  /// A patch of some of the faces of a region, from its map. most: excess it may have at any rate.
+  /// A patch of some of the faces of a region, from its map. most: of its excess, for its area.
   [[nodiscard]] MappedRegion map_faces(std::vector<Index> faces, const Region& both,
                                        double most) const {
     const Ranks rank(surface_.mesh.faces.size(), both.faces);
@@ -162,9 +162,8 @@ class Shortening {
       patch.area += surface_.area(t);
     }
     patch.region.faces = std::move(faces);
-    const TestRules rules{.most_excess = std::max(settings_.cap * patch.area, most),
-                          .stop = context_.stop,
-                          .memory = context_.failures};
+    const TestRules rules{
+        .most_excess = most * patch.area, .stop = context_.stop, .memory = context_.failures};
     const TestResult result = test_parameterization(surface_, partition_.open, rules, patch.region);
     if (context_.progress != nullptr) context_.progress->add(patch.region.faces.size());
     patch.excess = result.excess;

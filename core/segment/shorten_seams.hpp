@@ -7,8 +7,8 @@ namespace unwrapd::segment {
 
 /// Moves every row of seams, from one junction to the next, to the shortest path along edges of the
 /// regions on its sides, or to the shortest one nearby, where that saves length and the regions
-/// keep a sound map: the excess of each over its area is at most the cap, or what both had; that of
-/// all is at most the budget. Lengths are by seam_cost. Throws Error{cancelled}.
+/// keep a sound map: the excess of each over its area is at most the cap, or the larger one that
+/// they had; that of all is at most the budget. Lengths are by seam_cost. Throws Error{cancelled}.
 void shorten_seams(const MergeContext& context, const MergeSettings& settings,
                    Partition& partition);
 

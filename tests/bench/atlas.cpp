@@ -54,14 +54,22 @@ struct Took {
   double seconds = 0, megabytes = 0;
 };
 
+/// D_angle or D_area of the chart that has most.
+double worst_chart(const Report& report) {
+  double worst = 2;
+  for (const ChartReport& chart : report.charts)
+    worst = std::max({worst, chart.distortion.angle, chart.distortion.area});
+  return worst;
+}
+
 void print_row(const fs::path& path, const Unwrapped& unwrapped, const WrittenAtlas& own,
                double creases, const Took& took, std::span<Shares> shares) {
   const Report& report = unwrapped.report;
-  std::printf("%-22.22s %7d %6d %7.3f %7.4f %7.4f %5.3f %5d %7lld %6.2f %8d %6.2f %7.2f %6.0f",
-              path.stem().string().c_str(), report.input.faces, own.charts, report.seam_ratio,
-              own.angle, own.area, own.fill, own.flips,
-              static_cast<long long>(own.overlapping_texels), own.gap, own.mirrored, creases,
-              took.seconds, took.megabytes);
+  std::printf(
+      "%-22.22s %7d %6d %7.3f %7.4f %7.4f %5.3f %5d %7lld %6.2f %8d %6.2f %7.2f %6.0f %7.3f",
+      path.stem().string().c_str(), report.input.faces, own.charts, report.seam_ratio, own.angle,
+      own.area, own.fill, own.flips, static_cast<long long>(own.overlapping_texels), own.gap,
+      own.mirrored, creases, took.seconds, took.megabytes, worst_chart(report));
   const auto peers = std::ranges::find(kPeers, path.stem().string(), &PeerRow::mesh);
   if (peers != kPeers.end()) {
     print_peer(peers->xatlas, own, report.seam_ratio, shares[0]);
@@ -94,9 +102,9 @@ int show_all(const std::vector<std::string>& paths, const UnwrapOptions& options
       "share of the seams that lies on sharp or split edges and "
       "between materials.\n",
       options.resolution, options.padding);
-  std::printf("%-22s %7s %6s %7s %7s %7s %5s %5s %7s %6s %8s %6s %7s %6s\n", "mesh", "faces",
+  std::printf("%-22s %7s %6s %7s %7s %7s %5s %5s %7s %6s %8s %6s %7s %6s %7s\n", "mesh", "faces",
               "charts", "seam", "D_angle", "D_area", "fill", "flips", "overlap", "gap", "mirrored",
-              "crease", "seconds", "MB");
+              "crease", "seconds", "MB", "worst D");
   std::array<Shares, 3> shares = {
       Shares{"xatlas", {}, {}}, {"UVAtlas", {}, {}}, {"UVAtlas at D 2.02", {}, {}}};
   for (const std::string& path : paths)

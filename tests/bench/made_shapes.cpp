@@ -120,6 +120,29 @@ TriMesh kit(double faces, Random& random) {
   return shapes::merged(all);
 }
 
+/// A plate with wells, cones and domes on it, much smaller than the plate, as machine parts have.
+TriMesh plate(double faces, Random& random) {
+  struct Feature {
+    unsigned kind;
+    double radius, height;
+  };
+  const int cells = 4 + static_cast<int>(random() % 6);
+  std::vector<Feature> features(static_cast<std::size_t>(cells * cells));
+  for (Feature& own : features)
+    own = {static_cast<unsigned>(random() % 4), between(random, .08, .3), between(random, .5, 2.5)};
+  return shapes::mapped_grid(side(faces), side(faces), shapes::Wrap::none, [&](double u, double v) {
+    const auto cell = [&](double x) { return std::min(cells - 1, static_cast<int>(x * cells)); };
+    const auto off = [&](double x) { return x * cells - cell(x) - 0.5; };
+    const Feature& own = features[static_cast<std::size_t>(cells * cell(v) + cell(u))];
+    const double away = std::hypot(off(u), off(v)) / own.radius, size = own.radius * own.height;
+    if (own.kind == 3 || away > 1) return Vec3(cells * u, cells * v, 0);
+    const double height = own.kind == 0   ? -1
+                          : own.kind == 1 ? 1 - away
+                                          : std::sqrt(1 - away * away);
+    return Vec3(cells * u, cells * v, size * height);
+  });
+}
+
 }  // namespace
 
 TriMesh made_shape(const std::string& name) {
@@ -140,6 +163,7 @@ TriMesh made_shape(const std::string& name) {
   if (family == "torus") return torus(faces, random);
   if (family == "crowd") return crowd(faces, random);
   if (family == "kit") return kit(faces, random);
+  if (family == "plate") return plate(faces, random);
   if (family == "opened") return opened_body(faces, seed);
   return {};
 }

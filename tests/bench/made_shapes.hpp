@@ -13,7 +13,8 @@ namespace unwrapd::bench {
 /// each a component), soup (triangles apart), hill (a bumpy disk), cap (more than half of a sphere,
 /// open), torus, opened (a body cut from limb to limb to a disk), crowd (a few bodies and many
 /// parts much smaller than these), kit (a floor of tiles with walls and crates on it, whose edges
-/// touch). About that many faces. Empty where the name is none of these.
+/// touch), plate (with small wells, cones and domes on it). About that many faces. Empty where the
+/// name is none of these.
 TriMesh made_shape(const std::string& name);
 
 }  // namespace unwrapd::bench

@@ -70,6 +70,29 @@ TEST(LargeCharts, KeepTheBoundWhereAVerySmallSurfaceHidesTooMuch) {
   EXPECT_EQ(notes_on_the_bound(report), 0);
 }
 
+/// Small cones on a plate: the small surface shows less of them than there is.
+TriMesh plate_with_cones(Index sides, int cones, double radius, double height) {
+  return mapped_grid(sides, sides, Wrap::none, [&](double u, double v) {
+    const auto off_middle = [&](double x) { return x - (std::floor(x * cones) + 0.5) / cones; };
+    const double away = std::hypot(off_middle(u), off_middle(v));
+    return Vec3(u, v, height * std::max(0.0, 1 - away / radius));
+  });
+}
+
+TEST(LargeCharts, AreNoneBeyondWhatOneOfThemMayHave) {
+  const std::vector<Surface> surfaces{surface_of(plate_with_cones(140, 6, .02, .05))};
+  UnwrapOptions options;
+  options.effort = Effort::fast;
+  options.max_distortion = kDefaultDistortion;
+  SerialExecutor serial;
+  const Report report = unwrap(surfaces, options, {}, serial).report;
+  EXPECT_LE(report.distortion.angle, kDefaultDistortion);
+  for (const ChartReport& chart : report.charts) {
+    EXPECT_LE(chart.distortion.angle, 2 + kMostOfOneRegion * (kDefaultDistortion - 2));
+    EXPECT_LE(chart.distortion.area, 2 + kMostOfOneRegion * (kDefaultDistortion - 2));
+  }
+}
+
 TEST(LargeCharts, AreTheSameForAnyExecutor) {
   const charts::Charts whole =
       charts::components_of(surface_of(bench::noisy_body(12'000, 0.25)), {});
