@@ -141,10 +141,13 @@ constexpr std::array kRows = {
         "A painted attribute of vertices, from 0 to 1, such as COLOR_0.r or _AVOID: where it is "
         "high, seams run elsewhere if that is not much longer. Unset: seams are as short as they "
         "can be."),
-    figure<&O::max_distortion>("max_distortion", {kMinDistortion, kMaxDistortion}, kEveryMethod,
-                               "The most distortion of angles and of areas of ARAP maps; 2 is "
-                               "ideal. Surfaces are split into charts until it holds. Lower values "
-                               "result in more charts. Unset: unlimited for a disk, else 2.02."),
+    figure<&O::max_distortion>(
+        "max_distortion", {kMinDistortion, kMaxDistortion}, kEveryMethod,
+        "The most distortion of angles and of areas of ARAP maps, as means over "
+        "the whole surface; 2 is ideal. One chart may lie four times as far "
+        "above 2. Surfaces are split into charts until it holds. Lower "
+        "values result in more charts. Unset: unlimited for a disk, else "
+        "2.02."),
     figure<&O::max_charts>("max_charts", {1, kMaxCharts}, kEveryMethod,
                            "The most charts, at any distortion, where topology allows it. Lower "
                            "values result in fewer charts with more distortion. Unset: unlimited."),

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/pipeline/as_mapped.hpp"
 #include "core/unwrap.hpp"
 #include "tests/bench/creases.hpp"
 #include "tests/bench/measure.hpp"
@@ -86,7 +87,9 @@ void show(const fs::path& path, const UnwrapOptions& options, std::span<Shares> 
   const double begin = cpu_seconds();
   const Unwrapped unwrapped = unwrap(surfaces, options, {}, serial);
   const double seconds = cpu_seconds() - begin, megabytes = peak_megabytes();
-  const std::vector<WrittenFace> faces = written_faces(surfaces, unwrapped.surfaces);
+  std::vector<UnwrappedSurface> maps = unwrapped.surfaces;
+  const charts::RepairedSurfaces repaired = pipeline::as_mapped(surfaces, options, maps);
+  const std::vector<WrittenFace> faces = written_faces(repaired.surfaces, maps);
   const WrittenRules rules{.resolution = options.resolution, .most_gap = 2.0 * options.padding};
   print_row(path, unwrapped, measure_written(faces, rules),
             share_on_creases(surfaces, unwrapped.surfaces), {seconds, megabytes}, shares);

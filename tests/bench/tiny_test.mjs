@@ -48,7 +48,7 @@ test('converge', async () => {
 test('atlas', async () => {
   const table = await program('atlas', sheet, 'noisy:1000', 'made:torus:300:1');
   assert.match(table, /^sheet +128 +1 /m);
-  assert.equal(table.match(/^\S+( +[\d.]+){13}$/gm)?.length, 3, table);
+  assert.equal(table.match(/^\S+( +[\d.]+){14}$/gm)?.length, 3, table);
 });
 
 test('bijective', async () => {
