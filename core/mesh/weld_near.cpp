@@ -164,15 +164,16 @@ class VertexSets {
 
   Index root(Index v) { return sets_.root(v); }
 
-  /// Welds two vertices, unless a face would collapse or the set would spread too far.
-  void weld(const VertexPair& pair, double spread) {
+  /// Welds two vertices, unless a face would collapse or the set would spread too far: false then.
+  bool weld(const VertexPair& pair, double spread) {
     const auto [to, from] = std::minmax({root(pair.low), root(pair.high)});
-    if (to == from) return;
-    if ((in_.mesh.positions[to] - in_.mesh.positions[from]).norm() > spread) return;
-    if (size_[from] < size_[to] ? share_face(from, to) : share_face(to, from)) return;
+    if (to == from) return false;
+    if ((in_.mesh.positions[to] - in_.mesh.positions[from]).norm() > spread) return false;
+    if (size_[from] < size_[to] ? share_face(from, to) : share_face(to, from)) return false;
     sets_.join(from, to);
     std::swap(next_[from], next_[to]);  // two rings become one
     size_[to] += size_[from];
+    return true;
   }
 
  private:
@@ -199,10 +200,12 @@ class VertexSets {
 std::vector<Index> weld_ends(const WeldedFaces& in, std::span<const VertexPair> ends, double spread,
                              const std::stop_token& stop) {
   VertexSets sets(in);
+  bool is_any_welded = false;
   for (std::size_t k = 0; k < ends.size(); ++k) {
     check_cancelled_every(k, stop);
-    sets.weld(ends[k], spread);
+    is_any_welded |= sets.weld(ends[k], spread);
   }
+  if (!is_any_welded) return {};
   std::vector<Index> welded(in.mesh.positions.size());
   for (std::size_t v = 0; v < welded.size(); ++v) welded[v] = sets.root(static_cast<Index>(v));
   return welded;

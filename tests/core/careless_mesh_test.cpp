@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/charts/repair_surfaces.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/pipeline/analyse.hpp"
 #include "core/unwrap.hpp"
@@ -136,6 +137,17 @@ TEST(CarelessMesh, IsAnalysedAsItIsUnwrapped) {
   EXPECT_EQ(analysis.input.genus, 1);
   EXPECT_EQ(count_of(analysis.repairs, RepairKind::faces_turned),
             std::count(soup.is_turned.begin(), soup.is_turned.end(), 1));
+}
+
+/// A face without area leaves two open edges whose ends are near each other, and corners of a
+/// needle that would collapse if they were welded.
+TEST(CarelessMesh, HasNoRepairWhereNothingCanBeWelded) {
+  const TriMesh mesh{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1 + 1e-6, 0, 0), Vec3(0, 1, 0),
+                      Vec3(0, -1, 0), Vec3(1, 1, 0)},
+                     {{0, 1, 3}, {2, 0, 4}, {0, 2, 1}, {1, 2, 5}}};
+  const std::vector<Surface> surfaces{shapes::surface_of(mesh)};
+  const Welding welding{.mode = WeldMode::distance, .distance = 1e-3};
+  EXPECT_TRUE(charts::repair_surfaces(surfaces, welding).repairs.empty());
 }
 
 TEST(CarelessMesh, IsRefusedIfItIsOneSided) {
