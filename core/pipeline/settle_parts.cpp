@@ -13,7 +13,8 @@
 namespace unwrapd::pipeline {
 namespace {
 
-constexpr double kMuchExcess = 2;  // that of all is 1
+constexpr double kMuchExcess = 2;       // that of all is 1
+constexpr double kUnseenExcess = 1e-3;  // is not worth a solve
 
 measure::DistortionSums sums_of(const MappedChart& part, Executor& executor) {
   return measure::distortion_sums(part.chart->mesh, part.uv, executor);
@@ -58,13 +59,13 @@ void settle_parts(const UnwrapOptions& options, double lambda, const std::stop_t
     excess.push_back(excess_of(own));
     all += own;
   }
-  const double much = kMuchExcess * excess_of(all);
+  const double much = std::max(kMuchExcess * excess_of(all), kUnseenExcess);
   for (std::size_t k = 0; k < parts.size(); ++k) try {
       if (!(excess[k] > much)) continue;
       std::optional<MappedChart> own = solved(parts[k], options, lambda, stop, executor);
       if (own && excess_of(sums_of(*own, executor)) < excess[k]) parts[k] = std::move(*own);
     } catch (const Error&) {
-      throw_if_cancelled(stop);  // else the part stays
+      throw_if_cancelled(stop);  // it has a map with the guarantee
     }
 }
 

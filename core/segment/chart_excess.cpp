@@ -47,10 +47,9 @@ ExcessDistortion excess_in(const solve::Disk& disk, const UvMap& uv, Executor& e
   return {scale * own.angle, scale * own.area};
 }
 
-}  // namespace
-
-ExcessDistortion excess_in_space(const charts::Chart& chart, Executor& executor,
-                                 const std::stop_token& stop) {
+/// In mesh units; none where the chart cannot be factored.
+ExcessDistortion excess_of_one(const charts::Chart& chart, Executor& executor,
+                               const std::stop_token& stop) {
   try {
     throw_if_cancelled(stop);
     const solve::Disk disk = solve::make_disk(chart.mesh, chart.loops, stop);
@@ -61,15 +60,21 @@ ExcessDistortion excess_in_space(const charts::Chart& chart, Executor& executor,
   }
 }
 
-ExcessDistortion chart_excess(std::span<const charts::Chart> charts, Executor& executor,
-                              const std::stop_token& stop) {
-  ExcessDistortion total;
+}  // namespace
+
+ChartExcess chart_excess(std::span<const charts::Chart> charts, Executor& executor,
+                         const std::stop_token& stop) {
+  ChartExcess excess;
   double area = 0;
   for (const charts::Chart& chart : charts) {
-    total += excess_in_space(chart, executor, stop);
-    area += measure::surface_area(chart.mesh);
+    const ExcessDistortion own = excess_of_one(chart, executor, stop);
+    const double own_area = measure::surface_area(chart.mesh);
+    excess.of_each.push_back(own_area > 0 ? own.worst() / own_area : 0);
+    excess.mean += own;
+    area += own_area;
   }
-  return {total.angle / area, total.area / area};
+  excess.mean = {excess.mean.angle / area, excess.mean.area / area};
+  return excess;
 }
 
 }  // namespace unwrapd::segment

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <stop_token>
+#include <vector>
 
 #include "core/base/executor.hpp"
 #include "core/charts/charts.hpp"
@@ -10,16 +11,15 @@
 
 namespace unwrapd::segment {
 
-/// The excess of a chart after some iterations of ARAP from its start, in space: area * (D - 2).
-/// The rest as for several.
-ExcessDistortion excess_in_space(const charts::Chart& chart, Executor& executor,
-                                 const std::stop_token& stop);
+struct ChartExcess {
+  ExcessDistortion mean;        ///< over the area of all charts
+  std::vector<double> of_each;  ///< worst() of each chart over its own area
+};
 
-/// The excess of charts after some iterations of ARAP from their starts, over the area of all;
-/// faces that are flipped or collapsed then are left out. A chart that cannot be factored counts as
-/// flat. The same for any executor.
-/// Throws Error{cancelled}.
-ExcessDistortion chart_excess(std::span<const charts::Chart> charts, Executor& executor,
-                              const std::stop_token& stop);
+/// The excess of charts after some iterations of ARAP from their starts; faces that are flipped or
+/// collapsed then are left out. A chart that cannot be factored counts as flat. The same for any
+/// executor. Throws Error{cancelled}.
+ChartExcess chart_excess(std::span<const charts::Chart> charts, Executor& executor,
+                         const std::stop_token& stop);
 
 }  // namespace unwrapd::segment

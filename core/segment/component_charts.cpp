@@ -18,12 +18,6 @@ namespace {
 
 constexpr double kShareOfStandIn = 0.25;  // of the work, on the first stand-in
 
-SeamsOfCharts seams_of(const std::vector<charts::Chart>& charts) {
-  SeamsOfCharts seams{charts.size(), 0};
-  for (const charts::Chart& chart : charts) seams.length += weighted_boundary(chart);
-  return seams;
-}
-
 SegmentRules for_part_of_work(SegmentRules rules, double begin, double end) {
   rules.on_progress = part_of_progress(std::move(rules.on_progress), begin, end);
   return rules;

@@ -13,7 +13,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/measure/rest_triangle.hpp"
 #include "core/segment/chart_excess.hpp"
 #include "core/segment/coarsen.hpp"
 #include "core/segment/region_charts.hpp"
@@ -78,7 +77,7 @@ class Search {
     std::vector<charts::Chart> charts;
     ExcessDistortion small, large;  ///< on either surface, over its area
     SeamsOfCharts seams;            ///< weighted_boundary() of all charts
-    std::vector<double> excess;     ///< of each chart over its area, on the large surface
+    std::vector<double> excess;     ///< of each chart, on the large surface
   };
 
   std::vector<charts::Chart> loosened(Found best) {
@@ -148,23 +147,11 @@ class Search {
   Found on_large(const Segments& segments) {
     Found found{
         region_charts(component_, coarse_, segments, rules_.stop), segments.excess, {}, {}, {}};
-    double area = 0;
-    for (const charts::Chart& chart : found.charts) {
-      const ExcessDistortion own = excess_in_space(chart, executor_, rules_.stop);
-      const double own_area = measure::surface_area(chart.mesh);
-      found.excess.push_back(own_area > 0 ? own.worst() / own_area : 0);
-      found.large += own;
-      area += own_area;
-    }
-    found.large = {found.large.angle / area, found.large.area / area};
-    found.seams = seams_on_large(found.charts);
+    ChartExcess excess = chart_excess(found.charts, executor_, rules_.stop);
+    found.large = excess.mean;
+    found.excess = std::move(excess.of_each);
+    found.seams = seams_of(found.charts);
     return found;
-  }
-
-  [[nodiscard]] static SeamsOfCharts seams_on_large(const std::vector<charts::Chart>& charts) {
-    SeamsOfCharts seams{charts.size(), 0};
-    for (const charts::Chart& chart : charts) seams.length += weighted_boundary(chart);
-    return seams;
   }
 
   /// Charts that are distorted beyond what one may have, since the small surface hid it, are
@@ -183,7 +170,8 @@ class Search {
       for (charts::Chart& part : parts) all.push_back(std::move(part));
     }
     found.charts = std::move(all);
-    found.seams = seams_on_large(found.charts);
+    found.seams = seams_of(found.charts);
+    found.excess.clear();
   }
 
   /// None where the chart has too many faces for that.

@@ -94,6 +94,12 @@ double boundary_length(const charts::Chart& chart) { return boundary_by(chart, {
 
 double weighted_boundary(const charts::Chart& chart) { return boundary_by(chart, chart.avoid); }
 
+SeamsOfCharts seams_of(std::span<const charts::Chart> charts) {
+  SeamsOfCharts seams{charts.size(), 0};
+  for (const charts::Chart& chart : charts) seams.length += weighted_boundary(chart);
+  return seams;
+}
+
 charts::Chart as_component(const charts::Chart& component, const charts::Chart& chart) {
   charts::Chart alone = chart;
   alone.crease.clear();

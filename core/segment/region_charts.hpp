@@ -1,6 +1,7 @@
 #pragma once
 // Regions of a surface as charts.
 
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -15,6 +16,9 @@ double boundary_length(const charts::Chart& chart);
 
 /// The same by charts::seam_weight().
 double weighted_boundary(const charts::Chart& chart);
+
+/// With the weighted boundaries of all charts for a length.
+SeamsOfCharts seams_of(std::span<const charts::Chart> charts);
 
 /// A chart of a component as one of its own, with what it has of the component's creases.
 charts::Chart as_component(const charts::Chart& component, const charts::Chart& chart);

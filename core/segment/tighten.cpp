@@ -26,7 +26,7 @@ struct Weighed {
 Weighed weighed(charts::Chart chart, Executor& executor, const std::stop_token& stop) {
   Weighed own{std::move(chart)};
   own.area = measure::surface_area(own.chart.mesh);
-  own.excess = excess_in_space(own.chart, executor, stop).worst();
+  own.excess = own.area * chart_excess(std::span(&own.chart, 1), executor, stop).mean.worst();
   return own;
 }
 

@@ -80,6 +80,7 @@ TEST(SettleParts, LeavesAPartThatWouldLoseTheGuarantee) {
   ASSERT_EQ(overlaps(), 0U);
   settle(parts);
   EXPECT_EQ(overlaps(), 0U);
+  EXPECT_EQ(parts[1].chart->mesh.face_count(), spiral.face_count());
 }
 
 TEST(SettleParts, EndsAtOnceWhenCancelled) {
