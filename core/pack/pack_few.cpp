@@ -19,8 +19,9 @@ struct Try {
   int turns = 0;  ///< rotations in a full circle
   TouchingRules rules;
 };
-constexpr std::array kTries = {Try{72, {.2, .45}}, Try{48, {.1, .9}}, Try{96, {.2, .45}},
-                               Try{60, {.2, .45}}, Try{72, {.4, .7}}, Try{48, {.4, .7}}};
+/// Those of many rotations, whose masks take long, come last.
+constexpr std::array kTries = {Try{72, {.2, .45}}, Try{48, {.1, .9}},  Try{60, {.2, .45}},
+                               Try{48, {.4, .7}},  Try{96, {.2, .45}}, Try{72, {.4, .7}}};
 
 /// Where rotations are fixed, tries differ by their rules alone.
 constexpr std::array kFixedTries = {Try{1, {.2, .45}}, Try{1, {.1, .9}}, Try{1, {.4, .7}}};
@@ -33,16 +34,17 @@ struct Extent {
   double fine = 1;           ///< the same of those on the fine grids
   bool is_short = false;     ///< no grid between the first and the last
 };
-constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{6, 2, .1, .25}, Extent{6, 4, 1, 1}};
+constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{4, 1, .1, .25}, Extent{6, 4, 1, 1}};
 
+constexpr std::size_t kStartsWithSmall = 2;
 constexpr std::size_t kVeryFew = 3;  // islands that come to the same page from nearly any start
 
 /// Very few islands of a small mesh would take longer to pack than to map; where they may turn,
 /// most of that is masks. Where there are small ones besides the few, one start is nearly as good
-/// as another (.702 of a page for .705, in half the time).
+/// as another.
 Extent extent_of(std::size_t islands, const FewRules& rules) {
   Extent extent = kExtents[static_cast<std::size_t>(rules.effort)];
-  if (islands > kFewOnAPage && rules.effort == Effort::balanced) extent.starts = extent.finished;
+  if (islands > kFewOnAPage && rules.effort == Effort::balanced) extent.starts = kStartsWithSmall;
   if (islands > kVeryFew || rules.effort == Effort::best) return extent;
   extent.is_short = rules.rotation == Rotation::any;
   extent.starts = extent.is_short ? 1 : std::min(extent.starts, islands);
