@@ -216,8 +216,9 @@ TEST(Off, VariantsAreRead) {
   const std::string cube = cube_off();
   for (const std::string& file :
        {replaced(cube, "OFF # a cube\n", "OFF"), replaced(cube, "8 6 12", "8 6"),
-        replaced(cube, "OFF", "\xef\xbb\xbfOFF"), replaced(cube, "OFF", "COFF"),
-        replaced(cube, "OFF", "STOFF"), replaced(cube, "\n0 0 0\n", "\n# x\n0 0 0 255 0 0 # y\n")})
+        replaced(cube, "OFF", "\xef\xbb\xbfOFF"), replaced(cube, "OFF", "\xef\xbb\xbf\t \n OFF"),
+        replaced(cube, "OFF", "COFF"), replaced(cube, "OFF", "STOFF"),
+        replaced(cube, "\n0 0 0\n", "\n# x\n0 0 0 255 0 0 # y\n")})
     EXPECT_DOUBLE_EQ(volume(read_file(file).surfaces()[0].mesh), 6) << file.substr(0, 40);
   const Asset asset = read_file("NOFF\n3 1 0\n0 0 0 0 0 2\n1 0 0 0 0 2\n0 1 0 0 0 2\n3 0 1 2\n");
   const std::string answer = write(asset, split_everywhere(asset), Format::glb);

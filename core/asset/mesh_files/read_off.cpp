@@ -1,6 +1,7 @@
 // OFF, as Geomview defines it: counts, then one line for each vertex and each face. Whatever
 // follows the position on a line is a normal, a colour or a texture coordinate; what follows the
 // corners of a face is its colour.
+#include <algorithm>
 #include <limits>
 
 #include "core/asset/mesh_files/mesh_file.hpp"
@@ -36,11 +37,16 @@ Keyword keyword_of(std::string_view text) {
   return keyword;
 }
 
+/// The byte after spaces and empty lines.
+std::size_t start_of_words(std::string_view file) {
+  return std::min(file.find_first_not_of(" \t\r\n", start_of_text(file)), file.size());
+}
+
 class OffReader {
  public:
   OffReader(const Input& input, const ReadLimits& limits, Surface& surface)
-      : keyword_(keyword_of(input.document.substr(start_of_text(input.document)))),
-        reader_(input.document, start_of_text(input.document) + keyword_.size, input.stop,
+      : keyword_(keyword_of(input.document.substr(start_of_words(input.document)))),
+        reader_(input.document, start_of_words(input.document) + keyword_.size, input.stop,
                 kComment),
         limits_(limits),
         surface_(surface) {
