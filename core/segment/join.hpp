@@ -18,7 +18,7 @@ struct MappedRegion {
 };
 
 struct Joined {
-  MappedRegion patch;  ///< of both; sound where verdict says so
+  MappedRegion patch;  ///< of both; sound where verdict says so; no faces where none was tried
   Verdict verdict = Verdict::impossible;
   std::vector<Index> slit;  ///< half-edges of the common border that must stay open, both sides
 };
@@ -33,15 +33,16 @@ class Joiner {
   /// surface must outlive the joiner.
   explicit Joiner(const SegmentationMesh& surface);
 
-  /// b laid beside a, turned and moved as their common border asks, then mapped together. Where
-  /// that has no sound map, only the longest stretch of the border is glued: stretches end at
-  /// vertices that are far from flat. cap: most excess over area, where joining adds some.
-  /// open: one a half-edge of the surface, 1: not glued. trial: but for the excess. A
-  /// stop request ends it early.
+  /// b laid beside a, turned and moved as their common border asks, then mapped together, unless
+  /// they miss each other by too much there, which is flawed. Where that has no sound map, only the
+  /// longest stretch of the border is glued: stretches end at vertices that are far from flat. cap:
+  /// most excess over area, where joining adds some. open: one a half-edge of the surface, 1: not
+  /// glued. trial: but for the excess. A stop request ends it early.
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
                             std::span<const char> open, double cap, const TestRules& trial) const;
 
  private:
+  [[nodiscard]] double length_of(std::span<const Index> border) const;
   [[nodiscard]] std::vector<Index> slit_of(std::span<const Index> border) const;
 
   const SegmentationMesh& surface_;

@@ -154,7 +154,8 @@ class Merging {
     throw_if_cancelled(context_.stop);
     for (Union& both : batch) {
       if (context_.progress != nullptr)
-        context_.progress->add(both.tried->patch.region.faces.size());
+        context_.progress->add(patches_[both.a].region.faces.size() +
+                               patches_[both.b].region.faces.size());
       judge(std::move(both));
     }
   }

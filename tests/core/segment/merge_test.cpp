@@ -168,5 +168,41 @@ TEST(Join, SlitsATubeAtTheSamePlaceWhereverItLies) {
       EXPECT_EQ(slit_of_tube(scale * offset, scale), slit) << scale << ' ' << offset.transpose();
 }
 
+/// A flat ring, and a wall down from its inner edge, rolled out along its first line.
+TEST(Join, TriesNoWallWithThePlateAroundIt) {
+  const Index around = 24;
+  const SegmentationMesh surface =
+      without_creases(shapes::mapped_grid(around, 8, shapes::Wrap::first, [](double u, double v) {
+        const double r = std::max(1 - 1.6 * v, 0.2), z = std::min(0.5 - v, 0.0);
+        const double angle = 2 * M_PI * u;
+        return Vec3(r * std::cos(angle), r * std::sin(angle), z);
+      }));
+  const auto column = [&](Index t) { return t / 2 % around; };
+  std::vector<char> open(surface.length.size(), 0);
+  std::array<MappedRegion, 2> parts;  // the plate, the wall
+  for (Index t = 0; t < surface.face_count(); ++t) {
+    const bool is_wall = t >= surface.face_count() / 2;
+    CornerUv uv;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index h = 3 * t + Index(i), twin = surface.halfedges.twin[std::size_t(h)];
+      const Vec3& p = surface.mesh.positions[std::size_t(surface.mesh.faces[std::size_t(t)][i])];
+      double angle = std::atan2(p.y(), p.x());
+      if (angle < -1e-9 || (angle < 1 && column(t) == around - 1)) angle += 2 * M_PI;
+      uv[i] = is_wall ? Vec2(angle * p.head<2>().norm(), p.z()) : Vec2(p.head<2>());
+      const bool is_slit =
+          is_wall && twin != kNoTwin && std::abs(column(t) - column(face_of(twin))) == around - 1;
+      open[std::size_t(h)] = is_slit ? 1 : 0;
+    }
+    MappedRegion& part = parts[is_wall ? 1 : 0];
+    part.region.faces.push_back(t);
+    part.region.uv.push_back(uv);
+    part.area += surface.area(t);
+  }
+  const Joined joined = Joiner(surface).join(parts[0], parts[1], open, 1, {});
+  EXPECT_FALSE(joined.patch.is_sound);
+  EXPECT_TRUE(joined.patch.region.faces.empty());
+  EXPECT_TRUE(joined.slit.empty());  // the edge of a hole is one stretch
+}
+
 }  // namespace
 }  // namespace unwrapd::segment
