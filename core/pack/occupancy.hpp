@@ -50,8 +50,9 @@ class Occupancy {
   int width_, height_, margin_, levels_ = 1;
   std::size_t words_;
   std::int64_t work_ = 0;
-  int refusing_row_ =
-      0;  // row of the page that refused the last place; it is tested first next time
+  /// [word / words at once]: the row of the page that refused the last places there; it is tested
+  /// first next time.
+  std::vector<int> refusing_row_;
   std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };
 
