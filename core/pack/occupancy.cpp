@@ -23,7 +23,7 @@ std::size_t words_for(int bits) {
 
 Occupancy::Occupancy(int width, int height, int margin, int longest_run)
     : width_(width), height_(height), margin_(margin), words_(words_for(width + 2 * margin) + 2) {
-  refusing_row_.assign(words_ / kWordsAtOnce + 1, 0);
+  refusing_rows_.resize(words_ / kWordsAtOnce + 1);
   while ((1 << levels_) <= std::min(longest_run, width + 2 * margin)) ++levels_;
   const std::size_t rows = static_cast<std::size_t>(height) + 2 * static_cast<std::size_t>(margin);
   bits_.assign(static_cast<std::size_t>(levels_) * rows * words_, 0);
@@ -66,14 +66,20 @@ std::optional<int> Occupancy::first_free_in(const Mask& mask, const Place& place
     refuse<Words>(mask.grown, mask_row, place, refused);
     return std::all_of(refused.begin(), refused.end(), is_full);
   };
-  int& refusing_row = refusing_row_[place.word / kWordsAtOnce];
-  const int height = mask.grown.height(), last = refusing_row - place.y;
-  if (0 <= last && last < height && refuses_all(last)) return std::nullopt;
+  auto& refusing = refusing_rows_[place.word / kWordsAtOnce];
+  const int height = mask.grown.height();
+  for (auto row = refusing.begin(); row != refusing.end(); ++row) {
+    const int j = *row - place.y;
+    if (j < 0 || j >= height || !refuses_all(j)) continue;
+    std::rotate(refusing.begin(), row, row + 1);
+    return std::nullopt;
+  }
   for (int k = 0; k < height;
        ++k) {  // from the middle outwards: the widest rows are refused soonest
     const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
-    if (j == last || !refuses_all(j)) continue;
-    refusing_row = place.y + j;
+    if (!refuses_all(j)) continue;
+    std::rotate(refusing.begin(), refusing.end() - 1, refusing.end());
+    refusing.front() = place.y + j;
     return std::nullopt;
   }
   const auto free = std::find_if_not(refused.begin(), refused.end(), is_full);

@@ -1,6 +1,7 @@
 #pragma once
 // The taken cells of a page, in a form that tests all places of a row at once.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -50,9 +51,9 @@ class Occupancy {
   int width_, height_, margin_, levels_ = 1;
   std::size_t words_;
   std::int64_t work_ = 0;
-  /// [word / words at once]: the row of the page that refused the last places there; it is tested
-  /// first next time.
-  std::vector<int> refusing_row_;
+  /// [word / words at once]: the rows of the page that last refused all places there, the latest
+  /// first. They are tested first next time.
+  std::vector<std::array<int, 4>> refusing_rows_;
   std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };
 
