@@ -36,7 +36,7 @@ struct Extent {
 };
 constexpr std::array kExtents = {Extent{2, 1, .05, .1}, Extent{4, 1, .1, .25}, Extent{6, 4, 1, 1}};
 
-constexpr std::size_t kStartsWithSmall = 2;
+constexpr std::size_t kStartsWithSmall = 2;  // where there are more than kFewOnAPage
 constexpr std::size_t kVeryFew = 3;  // islands that come to the same page from nearly any start
 
 /// Very few islands of a small mesh would take longer to pack than to map; where they may turn,
@@ -48,7 +48,6 @@ Extent extent_of(std::size_t islands, const FewRules& rules) {
   if (islands > kVeryFew || rules.effort == Effort::best) return extent;
   extent.is_short = rules.rotation == Rotation::any;
   extent.starts = extent.is_short ? 1 : std::min(extent.starts, islands);
-  extent.finished = 1;
   return extent;
 }
 
