@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kWordBits = 64;
 constexpr std::size_t kWordsAtOnce = 4;
+constexpr std::size_t kRowsRemembered = 4;
 constexpr std::size_t kRunWork = 4;  // cost of a run beside its words, in words
 
 std::size_t words_for(int bits) {
@@ -23,7 +24,8 @@ std::size_t words_for(int bits) {
 
 Occupancy::Occupancy(int width, int height, int margin, int longest_run)
     : width_(width), height_(height), margin_(margin), words_(words_for(width + 2 * margin) + 2) {
-  refusing_rows_.resize(words_ / kWordsAtOnce + 1);
+  const std::size_t blocks = words_ / kWordsAtOnce + 1;
+  refusing_rows_.assign(blocks, std::vector<int>(blocks > 2 ? kRowsRemembered : 1, 0));
   while ((1 << levels_) <= std::min(longest_run, width + 2 * margin)) ++levels_;
   const std::size_t rows = static_cast<std::size_t>(height) + 2 * static_cast<std::size_t>(margin);
   bits_.assign(static_cast<std::size_t>(levels_) * rows * words_, 0);
@@ -66,7 +68,7 @@ std::optional<int> Occupancy::first_free_in(const Mask& mask, const Place& place
     refuse<Words>(mask.grown, mask_row, place, refused);
     return std::all_of(refused.begin(), refused.end(), is_full);
   };
-  auto& refusing = refusing_rows_[place.word / kWordsAtOnce];
+  std::vector<int>& refusing = refusing_rows_[place.word / kWordsAtOnce];
   const int height = mask.grown.height();
   for (auto row = refusing.begin(); row != refusing.end(); ++row) {
     const int j = *row - place.y;
@@ -77,7 +79,7 @@ std::optional<int> Occupancy::first_free_in(const Mask& mask, const Place& place
   for (int k = 0; k < height;
        ++k) {  // from the middle outwards: the widest rows are refused soonest
     const int j = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
-    if (!refuses_all(j)) continue;
+    if (std::ranges::find(refusing, place.y + j) != refusing.end() || !refuses_all(j)) continue;
     std::rotate(refusing.begin(), refusing.end() - 1, refusing.end());
     refusing.front() = place.y + j;
     return std::nullopt;

@@ -1,7 +1,6 @@
 #pragma once
 // The taken cells of a page, in a form that tests all places of a row at once.
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -52,8 +51,8 @@ class Occupancy {
   std::size_t words_;
   std::int64_t work_ = 0;
   /// [word / words at once]: the rows of the page that last refused all places there, the latest
-  /// first. They are tested first next time.
-  std::vector<std::array<int, 4>> refusing_rows_;
+  /// first. They are tested first next time. One where a row has but one block: such pages are low.
+  std::vector<std::vector<int>> refusing_rows_;
   std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };
 
