@@ -79,7 +79,7 @@ Format recognise(std::string_view file, const std::stop_token& stop) {
   const std::string_view words = text.substr(skip_spaces(text, 0, pace));
   if (words.starts_with('{')) return Format::gltf;
   if (starts_with_solid(words)) return Format::stl;
-  if (mesh_files::is_off(words)) return Format::off;
+  if (mesh_files::is_off(file, stop)) return Format::off;
   if (looks_like_obj(text, pace)) return Format::obj;
   throw Error(ErrorCode::unknown_format,
               "the file is neither GLB, glTF, OBJ, STL, PLY nor OFF; send one of these");

@@ -217,6 +217,7 @@ TEST(Off, VariantsAreRead) {
   for (const std::string& file :
        {replaced(cube, "OFF # a cube\n", "OFF"), replaced(cube, "8 6 12", "8 6"),
         replaced(cube, "OFF", "\xef\xbb\xbfOFF"), replaced(cube, "OFF", "\xef\xbb\xbf\t \n OFF"),
+        replaced(cube, "OFF", "# of a library\r\n\n  # 8 corners\n OFF"),
         replaced(cube, "OFF", "COFF"), replaced(cube, "OFF", "STOFF"),
         replaced(cube, "\n0 0 0\n", "\n# x\n0 0 0 255 0 0 # y\n")})
     EXPECT_DOUBLE_EQ(volume(read_file(file).surfaces()[0].mesh), 6) << file.substr(0, 40);

@@ -46,8 +46,9 @@ MeshFile read_off(const Input& input, const ReadLimits& limits, Surface& surface
 /// Whether the length of the file is the one that binary STL announces.
 bool is_binary_stl(std::string_view file);
 
-/// Whether the text begins with a keyword of OFF.
-bool is_off(std::string_view text);
+/// Whether the first word after spaces and comments begins with a keyword of OFF. Throws
+/// Error{cancelled}.
+bool is_off(std::string_view file, const std::stop_token& stop);
 
 /// Throws Error{malformed_mesh}. where: "byte 84" or "line 3".
 [[noreturn]] void refuse_mesh(const std::string& message, const std::string& where);

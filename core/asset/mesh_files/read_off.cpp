@@ -1,7 +1,6 @@
 // OFF, as Geomview defines it: counts, then one line for each vertex and each face. Whatever
 // follows the position on a line is a normal, a colour or a texture coordinate; what follows the
 // corners of a face is its colour.
-#include <algorithm>
 #include <limits>
 
 #include "core/asset/mesh_files/mesh_file.hpp"
@@ -37,21 +36,22 @@ Keyword keyword_of(std::string_view text) {
   return keyword;
 }
 
-/// The byte after spaces and empty lines.
-std::size_t start_of_words(std::string_view file) {
-  return std::min(file.find_first_not_of(" \t\r\n", start_of_text(file)), file.size());
+/// The first word, which may hold more than the keyword ("OFF8").
+struct FirstWord {
+  Keyword keyword;
+  std::size_t begin = 0;  ///< byte of the file
+};
+
+FirstWord first_word_of(std::string_view file, const std::stop_token& stop) {
+  TextReader reader(file, start_of_text(file), stop, kComment);
+  const std::string_view word = reader.next();
+  return {keyword_of(word), file.size() - reader.bytes_left() - word.size()};
 }
 
 class OffReader {
  public:
   OffReader(const Input& input, const ReadLimits& limits, Surface& surface)
-      : keyword_(keyword_of(input.document.substr(start_of_words(input.document)))),
-        reader_(input.document, start_of_words(input.document) + keyword_.size, input.stop,
-                kComment),
-        limits_(limits),
-        surface_(surface) {
-    file_.stop = input.stop;
-  }
+      : OffReader(input, first_word_of(input.document, input.stop), limits, surface) {}
 
   MeshFile read() {
     if (!keyword_.is_of_space) reader_.refuse("the vertices are not of three dimensions");
@@ -68,6 +68,14 @@ class OffReader {
   }
 
  private:
+  OffReader(const Input& input, const FirstWord& first, const ReadLimits& limits, Surface& surface)
+      : keyword_(first.keyword),
+        reader_(input.document, first.begin + first.keyword.size, input.stop, kComment),
+        limits_(limits),
+        surface_(surface) {
+    file_.stop = input.stop;
+  }
+
   static constexpr std::int64_t kVertexBytes = 6, kFaceBytes = 2;  // at least: "0 0 0\n", "0\n"
 
   /// A number of elements, each of at least so many bytes.
@@ -114,7 +122,9 @@ class OffReader {
 
 }  // namespace
 
-bool is_off(std::string_view text) { return keyword_of(text).size > 0; }
+bool is_off(std::string_view file, const std::stop_token& stop) {
+  return first_word_of(file, stop).keyword.size > 0;
+}
 
 MeshFile read_off(const Input& input, const ReadLimits& limits, Surface& surface) {
   return OffReader(input, limits, surface).read();
