@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kWordBits = 64;
 constexpr std::size_t kWordsAtOnce = 4;
-constexpr std::size_t kRowsRemembered = 4;
-constexpr std::size_t kRunWork = 4;  // cost of a run beside its words, in words
+constexpr std::size_t kRowsRemembered = 4;  // of a wide page
+constexpr std::size_t kRunWork = 4;         // cost of a run beside its words, in words
 
 std::size_t words_for(int bits) {
   return static_cast<std::size_t>((bits + kWordBits - 1) / kWordBits);
@@ -24,8 +24,9 @@ std::size_t words_for(int bits) {
 
 Occupancy::Occupancy(int width, int height, int margin, int longest_run)
     : width_(width), height_(height), margin_(margin), words_(words_for(width + 2 * margin) + 2) {
-  const std::size_t blocks = words_ / kWordsAtOnce + 1;
-  refusing_rows_.assign(blocks, std::vector<int>(blocks > 2 ? kRowsRemembered : 1, 0));
+  const bool is_wide = words_ >= 2 * kWordsAtOnce;
+  const std::vector<int> unknown(is_wide ? kRowsRemembered : 1, 0);
+  refusing_rows_.assign(words_ / kWordsAtOnce + 1, unknown);
   while ((1 << levels_) <= std::min(longest_run, width + 2 * margin)) ++levels_;
   const std::size_t rows = static_cast<std::size_t>(height) + 2 * static_cast<std::size_t>(margin);
   bits_.assign(static_cast<std::size_t>(levels_) * rows * words_, 0);

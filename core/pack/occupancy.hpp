@@ -51,7 +51,7 @@ class Occupancy {
   std::size_t words_;
   std::int64_t work_ = 0;
   /// [word / words at once]: the rows of the page that last refused all places there, the latest
-  /// first. They are tested first next time. One where a row has but one block: such pages are low.
+  /// first. They are tested first next time. On narrow pages one: more gain nothing there.
   std::vector<std::vector<int>> refusing_rows_;
   std::vector<Word> bits_;  // bit x of row(k, y): a cell of [x, x + 2^k) is taken
 };

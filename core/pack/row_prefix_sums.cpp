@@ -9,7 +9,7 @@ namespace {
 constexpr int kPlaces = 16;               // that are computed side by side
 constexpr std::size_t kBlock = 128;       // entries of a column that are summed up together
 constexpr std::size_t kEntriesAStep = 4;  // see work()
-constexpr int kRowsTogether = 4;
+constexpr int kRowsTogether = 4;          // between two looks at whether places are left
 constexpr int kStepsOfALook = 8, kStepsOfARow = 3;
 
 /// kPlaces places of a column.
@@ -26,21 +26,21 @@ struct OverlapQuery {
 };
 
 /// Adds up the mask's rows, from the middle outwards, until every place weighs at least `most`.
-/// Returns the number of rows. Every few rows it looks whether they all do: to compare the places
-/// of a register with each other takes as long as a row.
+/// Returns the number of rows. Only every few rows it looks whether all places do, since that takes
+/// about as long as a row.
 [[gnu::always_inline]] inline int weigh(const OverlapQuery& look, Places& places) {
   const int height = look.rows.height();
   std::array<std::int32_t, kPlaces> sum = places.weight;
   int k = 0;
   for (int below = 1; k < height && below != 0;) {
-    for (const int end_of_some = std::min(k + kRowsTogether, height); k < end_of_some; ++k) {
+    for (const int end = std::min(k + kRowsTogether, height); k < end; ++k) {
       const int row = height / 2 + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
       const std::int32_t* own = look.table + row;
       std::array<std::int32_t, kPlaces> here{};
       for (const Run& run : look.rows.row(row)) {
         const std::int32_t* begin = own + static_cast<std::size_t>(run.begin) * look.stride;
-        const std::int32_t* end = own + static_cast<std::size_t>(run.end) * look.stride;
-        for (std::size_t i = 0; i < kPlaces; ++i) here[i] += end[i] - begin[i];
+        const std::int32_t* beyond = own + static_cast<std::size_t>(run.end) * look.stride;
+        for (std::size_t i = 0; i < kPlaces; ++i) here[i] += beyond[i] - begin[i];
       }
       // beyond the column's end differences mean nothing
       for (std::size_t i = 0; i < kPlaces; ++i)

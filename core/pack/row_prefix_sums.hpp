@@ -18,8 +18,6 @@ struct CellWindow {
   int x_begin = 0, x_end = 0, y_begin = 0, y_end = 0;
 };
 
-/// Weighted cells of a window, in each row summed up from the left: what a run covers is the
-/// difference of two entries. Columns lie in one piece, so a register has many places of one.
 /// Of a column of places.
 struct LeastOverlap {
   int y = 0;

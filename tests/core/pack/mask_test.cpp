@@ -107,16 +107,20 @@ TEST(Occupancy, FindsTheLeftmostFreePlaceBruteForce) {
       }
     return true;
   };
-  for (int k = 0; k < 100; ++k) {
+  for (int k = 0; k < 200; ++k) {
     const Mask mask = make_mask(star(rng, 6, 4 + k % 11), {}, padding);
-    const int y = int(rng() % 80);
-    int expected = k % 2 == 0 ? 0 : int(rng() % width);
-    const std::optional<int> found = page.first_free(mask, y, expected);
-    while (expected + mask.width <= width && !fits(mask, expected, y)) ++expected;
-    const bool any = expected + mask.width <= width && y + mask.touched.height() <= side;
-    ASSERT_EQ(found.has_value(), any);
-    if (!any) continue;
-    EXPECT_EQ(*found, expected);
+    int from = k % 2 == 0 ? 0 : int(rng() % width);
+    std::optional<int> found;
+    int y = int(rng() % 80);  // and up, since what refused one row of places is tested first above
+    for (;; ++y, from = 0) {
+      found = page.first_free(mask, y, from);
+      int expected = from;
+      while (expected + mask.width <= width && !fits(mask, expected, y)) ++expected;
+      const bool any = expected + mask.width <= width && y + mask.touched.height() <= side;
+      ASSERT_EQ(found, any ? std::optional(expected) : std::nullopt) << k << ", row " << y;
+      if (any || y + mask.touched.height() > side) break;
+    }
+    if (!found) continue;
     page.stamp(mask, *found, y);
     for (int v = 0; v < mask.touched.height(); ++v)
       for (int u = 0; u < mask.width; ++u)
