@@ -4,10 +4,9 @@
 // Where two regions meet along more than one stretch they close to a tube or a cap that cannot lie
 // flat, though glued along one stretch alone they would: a tube rolls out along a slit.
 //
-// Where the maps miss each other by much at the border, no map of both is sound: of 2,000 such
-// trials of regions with several stretches one in a hundred was, and the longest stretch may still
-// be glued. A wall that stands around a hole, rolled out, misses the hole's edge by .24 of its
-// length: sqrt(1/12 - 1/(4 pi^2)).
+// Where the maps miss each other by much at the border, hardly any map of both is sound, and of
+// several stretches the longest may still be glued (ADR 0079). A wall that stands around a hole,
+// rolled out, misses the hole's edge by .24 of its length: sqrt(1/12 - 1/(4 pi^2)).
 //
 // Rejected: lower bounds, and no trial where maps lie over each other (winding numbers on a grid):
 // of the time that failures take it saves a half where it also turns down a twentieth of what is
