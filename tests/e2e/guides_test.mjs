@@ -38,6 +38,22 @@ const sizeOf = (path) => {
   return [head.readUInt32BE(16), head.readUInt32BE(20)];
 };
 
+test("the answer that README.md shows, whose pictures are of the same map", async () => {
+  const readme = readFileSync(join(docs, "../README.md"), "utf8");
+  const text = /^Unwrapd-Report: (\{.*?\})\n```/ms.exec(readme)[1];
+  const digits = new Map([...text.matchAll(/"(\w+)":\d+\.(\d+)/g)].map(([, key, decimals]) => [key, decimals.length]));
+  const made = await run("unwrap --sample shell.glb", home);
+  assert.equal(made.code, 0, made.output);
+  const response = await fetch(`${server.base}/v1/unwrap?method=arap`, {
+    method: "POST",
+    headers: { "Content-Type": "model/gltf-binary" },
+    body: readFileSync(join(home, "shell.glb")),
+  });
+  assert.equal(response.status, 200);
+  const rounded = (key, value) => (digits.has(key) ? Number(value.toFixed(digits.get(key))) : value);
+  assert.deepEqual(JSON.parse(response.headers.get("unwrapd-report"), rounded), JSON.parse(text));
+});
+
 for (const guide of ["guide.md", "methods.md", "cookbook.md"])
   test(`the commands of ${guide}`, async () => {
     const text = readFileSync(join(docs, guide), "utf8");
