@@ -10,6 +10,7 @@
 
 #include "core/mesh/edges.hpp"
 #include "core/segment/labels.hpp"
+#include "core/segment/region_pair.hpp"
 #include "core/segment/remap.hpp"
 
 namespace unwrapd::segment {
@@ -116,8 +117,8 @@ class Attaching {
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
         if (across(h) == into) open[h] = open[twin(h)] = 1;
     for (const Index h : edges) open[h] = open[twin(h)] = 0;
-    MappedRegion both{
-        beside(surface_, other.region, own.region, edges), {}, own.area + other.area, true};
+    MappedRegion both = beside(other, own, beside(surface_, other.region, own.region, edges));
+    both.is_sound = true;
     if (!remap(context_, settings_, open, own.excess + other.excess, both, total_)) return false;
     for (const Index t : own.region.faces) owner_[t] = into;
     partition_.open = std::move(open);

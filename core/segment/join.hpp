@@ -9,10 +9,11 @@ namespace unwrapd::segment {
 
 /// A region with the map that it has so far.
 struct MappedRegion {
-  Region region;
-  ExcessDistortion excess;  ///< of that map
-  double area = 0;          ///< of the surface's 1
-  bool is_sound = false;    ///< its map is; what is not sound merges with nothing
+  Region region = {};
+  ExcessDistortion excess = {};  ///< of that map
+  double area = 0;               ///< of the surface's 1
+  double area_added = 0;         ///< of it, since all of it was mapped at once
+  bool is_sound = false;         ///< its map is; what is not sound merges with nothing
 
   [[nodiscard]] double mean_excess() const { return excess.worst() / area; }
 };
@@ -23,9 +24,13 @@ struct Joined {
   std::vector<Index> slit;  ///< half-edges of the common border that must stay open, both sides
 };
 
-/// The faces and maps of both, b turned and moved to where its half-edges `border` lie in a.
-Region beside(const SegmentationMesh& surface, const Region& a, const Region& b,
-              std::span<const Index> border);
+/// Whether b is so small beside a that its union with a is worth less than what it takes to map all
+/// of a anew (ADR 0080).
+bool is_small_beside(const Region& b, const Region& a);
+
+/// Both as one that is not mapped yet; both: b laid beside a. Where b is small and little was
+/// added to a since all of it was mapped, the map of a may stay.
+MappedRegion beside(const MappedRegion& a, const MappedRegion& b, Region both);
 
 /// What joining regions needs of the surface, worked out once.
 class Joiner {
@@ -33,11 +38,12 @@ class Joiner {
   /// surface must outlive the joiner.
   explicit Joiner(const SegmentationMesh& surface);
 
-  /// b laid beside a, turned and moved as their common border asks, then mapped together, unless
-  /// they miss each other by too much there, which is flawed. Where that has no sound map, only the
-  /// longest stretch of the border is glued: stretches end at vertices that are far from flat. cap:
-  /// most excess over area, where joining adds some. open: one a half-edge of the surface, 1: not
-  /// glued. trial: but for the excess. A stop request ends it early.
+  /// b laid beside a, or a beside b where a is small beside it, turned and moved as their common
+  /// border asks, then both mapped together, unless that is hopeless, which is flawed.
+  /// Where that has no sound map, only the longest stretch of the border is glued: stretches end at
+  /// vertices that are far from flat. cap: most excess over area, where joining adds some. open:
+  /// one a half-edge of the surface, 1: not glued. trial: but for the excess. A stop request ends
+  /// it early.
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
                             std::span<const char> open, double cap, const TestRules& trial) const;
 

@@ -18,6 +18,7 @@
 #include "core/base/splitmix64.hpp"
 #include "core/pack/box.hpp"
 #include "core/segment/labels.hpp"
+#include "core/segment/region_pair.hpp"
 
 namespace unwrapd::segment {
 namespace {
@@ -138,11 +139,25 @@ class Merging {
     queue_.push({forecast_key, std::min(a, b), std::max(a, b)});
   }
 
+  /// Whether testing both at once may be for nothing, and dear: they have a large region in common,
+  /// so that where one of them is made, the other no longer can be.
+  [[nodiscard]] bool would_waste(const Union& u, const Union& v) const {
+    for (const auto& [large, small] : {std::pair(u.a, u.b), std::pair(u.b, u.a)})
+      if ((large == v.a || large == v.b) &&
+          is_small_beside(patches_[small].region, patches_[large].region))
+        return true;
+    return false;
+  }
+
   /// Tests the best unions that were not tested yet.
   void try_batch(Executor& executor) {
     std::vector<Union> batch;
     while (!queue_.empty() && batch.size() < kBatch && queue_.top().tried == nullptr) {
-      if (is_alive(queue_.top())) batch.push_back(queue_.top());
+      const Union& next = queue_.top();
+      if (is_alive(next)) {
+        if (std::ranges::any_of(batch, [&](const Union& u) { return would_waste(u, next); })) break;
+        batch.push_back(next);
+      }
       queue_.pop();
     }
     executor.for_each_block(static_cast<int>(batch.size()), [&](int k) {
@@ -161,11 +176,16 @@ class Merging {
   }
 
   /// Whether the shape of the patch would leave too much of a page empty.
-  [[nodiscard]] bool is_awkward(const MappedRegion& patch) const {
+  [[nodiscard]] bool is_awkward(const Joined& joined) const {
+    const MappedRegion& patch = joined.patch;
     if (settings_.least_fill <= 0 || patch.area < kLarge * settings_.page_area) return false;
+    std::vector<char> open = open_;
+    for (const Index h : joined.slit) open[h] = 1;
     UvMap points;
-    points.reserve(3 * patch.region.uv.size());
-    for (const CornerUv& uv : patch.region.uv) points.insert(points.end(), uv.begin(), uv.end());
+    for (const auto& [from, to] : boundary_sides(surface_, open, patch.region)) {
+      points.push_back(from);
+      points.push_back(to);
+    }
     points = pack::convex_hull(std::move(points));
     const double side = pack::squarest_box(points).size.maxCoeff();
     return side * side * settings_.least_fill > settings_.page_area ||
@@ -175,7 +195,7 @@ class Merging {
   void judge(Union both) {
     Forecast& known = known_[{both.a, both.b}];
     Joined& joined = *both.tried;
-    if (joined.patch.is_sound && is_awkward(joined.patch)) joined.patch.is_sound = false;
+    if (joined.patch.is_sound && is_awkward(joined)) joined.patch.is_sound = false;
     const ExcessDistortion rise =
         joined.patch.excess - patches_[both.a].excess - patches_[both.b].excess;
     known = {std::max(rise.worst(), 0.0), !joined.patch.is_sound,

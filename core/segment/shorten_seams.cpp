@@ -11,6 +11,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/segment/ranks.hpp"
+#include "core/segment/region_pair.hpp"
 #include "core/segment/remap.hpp"
 #include "core/segment/seam_paths.hpp"
 

@@ -42,6 +42,8 @@ enum class Verdict {
 struct Region {
   std::vector<Index> faces;
   std::vector<CornerUv> uv;  ///< one a face: its map so far, or a seed for it
+  std::size_t mapped = 0;    ///< this many faces at the front have a sound map together, which may
+                             ///< stay as it is away from the others
 };
 
 class FailedTrials;
@@ -53,9 +55,10 @@ struct TestRules {
   FailedTrials* memory = nullptr;  ///< of failures, that need no second trial; null: none
 };
 
-/// A few iterations of ARAP from the rotations of region.uv, which need not hold together. Where
-/// the map is sound, region.uv becomes it, with UV area = 3D area; else it is of no use. open: one
-/// a half-edge of the surface, 1: not glued; empty: none. A stop request ends it early, with any
+/// A few iterations of ARAP from the rotations of region.uv, which need not hold together, on all
+/// of it or, where few faces are not `mapped`, on these and a rim around them (ADR 0080). Where the
+/// map is sound, region.uv becomes it, with UV area = 3D area; else it is of no use. open: one a
+/// half-edge of the surface, 1: not glued; empty: none. A stop request ends it early, with any
 /// verdict.
 struct TestResult {
   Verdict verdict = Verdict::impossible;

@@ -88,6 +88,27 @@ TEST(Merge, RefusesALargeUnionThatFillsItsHullTooLittle) {
   EXPECT_EQ(count(0.9, 30), 1U);  // too small a share of the page to matter
 }
 
+/// A comb of 25 x 24 squares, whose back and odd teeth are one region: each of its twelve unions
+/// with an even tooth is tested once, when no other can be made first.
+TEST(Merge, TestsNoTwoUnionsOfOneLargeRegionAtOnce) {
+  const SegmentationMesh surface = without_creases(shapes::grid(25, 24, 25, 24));
+  const Vec3 corner = surface.mesh.positions.front();
+  const double side = std::sqrt(1.0 / 600);  // of a square: all are 1
+  const Partition comb = parted(surface, [&](const Vec3& m) {
+    const int column = int((m.x() - corner.x()) / side), row = int((m.y() - corner.y()) / side);
+    return row == 23 && column % 2 == 1 ? (column + 1) / 2 : 0;
+  });
+  ASSERT_EQ(comb.patches.size(), 13U);
+  ProgressEstimate progress({});
+  SerialExecutor serial;
+  const Partition all = merge_patches({.surface = surface, .progress = &progress}, Joiner(surface),
+                                      comb, {.budget = 0.02, .cap = 0.02}, serial);
+  EXPECT_EQ(all.patches.size(), 1U);
+  double tested = 0;
+  for (int tooth = 1; tooth <= 12; ++tooth) tested += 1200 - 24 + 2 * tooth;
+  EXPECT_EQ(progress.done(), tested);
+}
+
 /// Sixteen squares: which unions come first is all the same by their borders.
 TEST(Merge, DrawsLotsWhereItHasAWhim) {
   const SegmentationMesh surface = without_creases(shapes::grid(8, 8));
