@@ -5,7 +5,8 @@
 namespace unwrapd::segment {
 
 std::uint64_t trial_key(std::span<const char> open, const TestRules& rules, const Region& region) {
-  std::uint64_t sum = splitmix64(static_cast<std::uint64_t>(rules.iterations));
+  const std::uint64_t keeps = region.mapped > 0 ? 1 : 0;
+  std::uint64_t sum = splitmix64(2 * static_cast<std::uint64_t>(rules.iterations) + keeps);
   for (const Index t : region.faces) {
     auto word = static_cast<std::uint64_t>(t);
     for (Index h = 3 * t; h < 3 * t + 3; ++h)

@@ -13,7 +13,8 @@
 
 namespace unwrapd::segment {
 
-/// A number for the set of faces that is tried and for what is glued in it. Order and seed are left
+/// A number for the set of faces that is tried, for what is glued in it, and for whether a map of a
+/// part of it stays, which may fail where a map of all of it would not. Order and seed are left
 /// out: a set without a sound map from one seed hardly ever has one from another.
 std::uint64_t trial_key(std::span<const char> open, const TestRules& rules, const Region& region);
 

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "core/linear/analysis.hpp"
 #include "core/segment/failed_trials.hpp"
-#include "core/segment/region_mesh.hpp"
-#include "core/segment/region_pair.hpp"
+#include "tests/core/segment/cap_with_flap.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment {
@@ -62,24 +60,6 @@ TEST(SegmentationMesh, HasAnOrderOfEliminationThatSuitsItsParts) {
       << "the test would see any order pass";
 }
 
-/// A fine cap of a sphere without ten faces at its rim, mapped; then with them.
-struct CapWithFlap {
-  SegmentationMesh surface = segmentation_mesh_of(shapes::sphere_cap(40, 20, 0.8));
-  Region both;
-
-  CapWithFlap() {
-    std::vector<Index> flap;
-    for (Index t = 0; t < surface.face_count(); ++t)
-      (t < surface.face_count() - 10 ? both.faces : flap).push_back(t);
-    both.uv = projected(surface, both.faces);
-    EXPECT_EQ(test_parameterization(surface, {}, {.most_excess = 1}, both).verdict, Verdict::sound);
-    const Region rest = both, added{flap, projected(surface, flap)};
-    const std::vector<char> open(surface.length.size(), 0);
-    both = beside(surface, rest, added, RegionPair(surface, rest, added).border(open));
-    both.mapped = rest.faces.size();
-  }
-};
-
 TEST(TestParameterization, LeavesAMapAsItIsAwayFromWhatIsAdded) {
   const CapWithFlap cap;
   Region near = cap.both, whole = cap.both;
@@ -104,47 +84,6 @@ TEST(TestParameterization, LeavesAMapAsItIsAwayFromWhatIsAdded) {
   EXPECT_GT(moved, 10U);
   EXPECT_LE(moved, 100U);
   EXPECT_GT(moved_anew, cap.both.mapped * 9 / 10);
-}
-
-/// Vertices that faces of both kinds have, by sets.
-TEST(MovingPart, HoldsWhatOtherFacesHaveToo) {
-  const CapWithFlap cap;
-  const RegionMesh region = region_mesh(cap.surface, {}, cap.both.faces);
-  const MovingPart part = moving_part(region, cap.both.mapped, cap.both.uv);
-  EXPECT_EQ(part.faces.size(), 100U);
-  EXPECT_TRUE(std::ranges::is_sorted(part.faces));
-  for (std::size_t t = cap.both.mapped; t < cap.both.faces.size(); ++t)
-    EXPECT_TRUE(std::ranges::binary_search(part.faces, static_cast<Index>(t)));
-  std::map<Index, Vec2> still;
-  std::set<Index> moving;
-  for (std::size_t t = 0; t < region.mesh.faces.size(); ++t)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Index v = region.mesh.faces[t][i];
-      if (std::ranges::binary_search(part.faces, static_cast<Index>(t)))
-        moving.insert(v);
-      else
-        still.emplace(v, cap.both.uv[t][i]);
-    }
-  EXPECT_EQ(std::set<Index>(part.vertices.begin(), part.vertices.end()), moving);
-  for (std::size_t k = 1; k < part.vertices.size(); ++k)
-    EXPECT_LT(region.rank[std::size_t(part.vertices[k - 1])],
-              region.rank[std::size_t(part.vertices[k])]);
-  std::map<Index, Vec2> held;
-  for (const auto& [v, at] : part.held.hard) held.emplace(part.vertices[std::size_t(v)], at);
-  std::erase_if(still, [&](const auto& vertex) { return !moving.contains(vertex.first); });
-  EXPECT_EQ(held, still);
-  EXPECT_FALSE(held.empty());
-}
-
-TEST(MovingPart, IsAllOfASmallRegionAndOfOneWithoutAMap) {
-  const CapWithFlap cap;
-  const RegionMesh region = region_mesh(cap.surface, {}, cap.both.faces);
-  const std::size_t count = cap.both.faces.size();
-  for (const std::size_t mapped : {std::size_t{0}, count - count / 15}) {
-    const MovingPart part = moving_part(region, mapped, cap.both.uv);
-    EXPECT_EQ(part.faces.size(), count);
-    EXPECT_TRUE(part.held.empty());
-  }
 }
 
 TEST(FailedTrials, KeepsFailuresAlone) {
@@ -208,6 +147,9 @@ TEST(FailedTrials, TellsSetsApartByTheirFacesAndWhatIsGlued) {
   const TestRules rules{.most_excess = 1};
   const std::uint64_t key = trial_key(dome.open, rules, dome.region);
   EXPECT_EQ(trial_key(dome.open, rules, dome.region), key);
+  Region held = dome.region;
+  held.mapped = 1;
+  EXPECT_NE(trial_key(dome.open, rules, held), key) << "whose map stays in part may fail for that";
   EXPECT_EQ(trial_key({}, rules, dome.region), key);  // nothing is open either way
   EXPECT_NE(trial_key(dome.open, {.iterations = 5, .most_excess = 1}, dome.region), key);
   std::vector<char> slit = dome.open;
