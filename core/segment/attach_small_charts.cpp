@@ -117,7 +117,7 @@ class Attaching {
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
         if (across(h) == into) open[h] = open[twin(h)] = 1;
     for (const Index h : edges) open[h] = open[twin(h)] = 0;
-    MappedRegion both = beside(other, own, beside(surface_, other.region, own.region, edges));
+    MappedRegion both = unite(other, own, beside(surface_, other.region, own.region, edges));
     both.is_sound = true;
     if (!remap(context_, settings_, open, own.excess + other.excess, both, total_)) return false;
     for (const Index t : own.region.faces) owner_[t] = into;

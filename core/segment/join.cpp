@@ -22,6 +22,7 @@
 #include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/segment/labels.hpp"
+#include "core/segment/region_mesh.hpp"
 #include "core/segment/region_pair.hpp"
 
 namespace unwrapd::segment {
@@ -51,15 +52,17 @@ bool is_small_beside(const Region& b, const Region& a) {
   return a.faces.size() >= std::max(kManyFaces, kSmall * b.faces.size());
 }
 
-MappedRegion beside(const MappedRegion& a, const MappedRegion& b, Region both) {
-  MappedRegion joined;
-  joined.region = std::move(both);
-  joined.area = a.area + b.area;
+MappedRegion unite(const MappedRegion& a, const MappedRegion& b, Region laid) {
+  MappedRegion both;
+  both.region = std::move(laid);
+  both.area = a.area + b.area;
   const double added = a.area_added + b.area;
-  if (added > kMostAdded * joined.area || !is_small_beside(b.region, a.region)) return joined;
-  joined.area_added = added;
-  joined.region.mapped = a.region.faces.size();
-  return joined;
+  if (added > kMostAdded * both.area || !is_small_beside(b.region, a.region) ||
+      2 * moving_count(b.region.faces.size()) > both.region.faces.size())
+    return both;
+  both.area_added = added;
+  both.region.mapped = a.region.faces.size();
+  return both;
 }
 
 Joiner::Joiner(const SegmentationMesh& surface) : surface_(surface) {
@@ -114,7 +117,7 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
     joined.patch = {};
     joined.verdict = Verdict::flawed;
     if (is_hopeless(pair, placement, open, a.area + b.area, length_of(glued))) return;
-    joined.patch = beside(a, b, std::move(placement.both));
+    joined.patch = unite(a, b, std::move(placement.both));
     const TestResult result = test_parameterization(surface_, cut, rules, joined.patch.region);
     joined.verdict = result.verdict;
     joined.patch.excess = result.excess;

@@ -12,7 +12,7 @@ struct MappedRegion {
   Region region = {};
   ExcessDistortion excess = {};  ///< of that map
   double area = 0;               ///< of the surface's 1
-  double area_added = 0;         ///< of it, since all of it was mapped at once
+  double area_added = 0;         ///< of it, since all of it was last mapped
   bool is_sound = false;         ///< its map is; what is not sound merges with nothing
 
   [[nodiscard]] double mean_excess() const { return excess.worst() / area; }
@@ -24,13 +24,13 @@ struct Joined {
   std::vector<Index> slit;  ///< half-edges of the common border that must stay open, both sides
 };
 
-/// Whether b is so small beside a that its union with a is worth less than what it takes to map all
-/// of a anew (ADR 0080).
+/// Whether a is large and b has a fraction of its faces, so that mapping all of a anew for b costs
+/// more than it tells (ADR 0080).
 bool is_small_beside(const Region& b, const Region& a);
 
-/// Both as one that is not mapped yet; both: b laid beside a. Where b is small and little was
-/// added to a since all of it was mapped, the map of a may stay.
-MappedRegion beside(const MappedRegion& a, const MappedRegion& b, Region both);
+/// Both as one region that is not mapped yet. laid: b beside a. Where b is small and little was
+/// added to a since all of it was mapped, the map of a stays (Region::mapped).
+MappedRegion unite(const MappedRegion& a, const MappedRegion& b, Region laid);
 
 /// What joining regions needs of the surface, worked out once.
 class Joiner {

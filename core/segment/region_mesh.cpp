@@ -11,8 +11,8 @@
 namespace unwrapd::segment {
 namespace {
 
-constexpr std::size_t kRim = 8;         // times as many faces as are new
-constexpr std::size_t kLeastRim = 100;  // faces
+constexpr std::size_t kRim = 8;            // times as many faces as are new
+constexpr std::size_t kLeastMoving = 100;  // faces
 
 Halfedges glued(const SegmentationMesh& surface, std::span<const char> open,
                 std::span<const Index> faces) {
@@ -42,14 +42,12 @@ void flood(const Halfedges& halfedges, std::size_t enough, std::vector<char>& se
 
 std::vector<Index> moving_faces(const RegionMesh& region, std::size_t mapped) {
   const std::size_t count = region.mesh.faces.size();
-  const std::size_t enough = std::max(kRim * (count - mapped), kLeastRim);
-  const bool is_all = mapped == 0 || 2 * enough > count;
-  std::vector<Index> faces(is_all ? count : count - mapped);
-  std::iota(faces.begin(), faces.end(), static_cast<Index>(is_all ? 0 : mapped));
-  if (is_all) return faces;
+  std::vector<Index> faces(count - mapped);
+  std::iota(faces.begin(), faces.end(), static_cast<Index>(mapped));
+  if (mapped == 0) return faces;
   std::vector<char> seen(count, 0);
   for (const Index t : faces) seen[t] = 1;
-  flood(region.halfedges, enough, seen, faces);
+  flood(region.halfedges, moving_count(faces.size()), seen, faces);
   std::ranges::sort(faces);
   return faces;
 }
@@ -109,6 +107,8 @@ RegionMesh region_mesh(const SegmentationMesh& surface, std::span<const char> op
   region.loops = boundary_loops(region.mesh, region.halfedges);
   return region;
 }
+
+std::size_t moving_count(std::size_t new_count) { return std::max(kRim * new_count, kLeastMoving); }
 
 bool is_disk(const RegionMesh& region) {
   const auto face_count = static_cast<Index>(region.mesh.faces.size());

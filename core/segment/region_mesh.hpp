@@ -32,8 +32,11 @@ struct MovingPart {
   solve::VertexConstraints held;  ///< where the map of the other faces has them
 };
 
-/// The faces behind the first `mapped` and a rim around them, several times as many; the whole
-/// region where that is most of it. uv: a map of the first, one a face.
+/// How many faces move where so many are new: they and a rim around them.
+std::size_t moving_count(std::size_t new_count);
+
+/// The faces behind the first `mapped` and a rim around them; the whole region where none is
+/// mapped. uv: of the first, one a face: a map in which they hold together.
 MovingPart moving_part(const RegionMesh& region, std::size_t mapped, std::span<const CornerUv> uv);
 
 }  // namespace unwrapd::segment

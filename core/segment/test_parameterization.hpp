@@ -42,8 +42,8 @@ enum class Verdict {
 struct Region {
   std::vector<Index> faces;
   std::vector<CornerUv> uv;  ///< one a face: its map so far, or a seed for it
-  std::size_t mapped = 0;    ///< this many faces at the front have a sound map together, which may
-                             ///< stay as it is away from the others
+  std::size_t mapped = 0;    ///< this many faces at the front have a sound map together, which
+                             ///< stays as it is away from the others
 };
 
 class FailedTrials;
@@ -55,15 +55,16 @@ struct TestRules {
   FailedTrials* memory = nullptr;  ///< of failures, that need no second trial; null: none
 };
 
-/// A few iterations of ARAP from the rotations of region.uv, which need not hold together, on all
-/// of it or, where few faces are not `mapped`, on these and a rim around them (ADR 0080). Where the
-/// map is sound, region.uv becomes it, with UV area = 3D area; else it is of no use. open: one a
-/// half-edge of the surface, 1: not glued; empty: none. A stop request ends it early, with any
-/// verdict.
 struct TestResult {
   Verdict verdict = Verdict::impossible;
   ExcessDistortion excess;
 };
+
+/// A few iterations of ARAP from the rotations of region.uv, which need not hold together. Where a
+/// part is `mapped`, only the other faces and a rim around them are mapped (ADR 0080). Where the
+/// map is sound, region.uv becomes it, with UV area = 3D area; else it is of no use. open: one a
+/// half-edge of the surface, 1: not glued; empty: none. A stop request ends it early, with any
+/// verdict.
 TestResult test_parameterization(const SegmentationMesh& surface, std::span<const char> open,
                                  const TestRules& rules, Region& region);
 

@@ -156,6 +156,29 @@ TEST(Merge, TellsOfSlitsOnBothSides) {
   EXPECT_NEAR(slit, 7 * std::sqrt(1.0 / 6), 1e-9);  // of twelve edges a tree of five is glued
 }
 
+/// Of its hull a cross of six squares covers 6/9: its outline runs along the slits that it opens.
+TEST(Merge, MeasuresTheShapeThatSlitsGive) {
+  const SegmentationMesh surface = without_creases(shapes::cube(1));
+  const auto side = [](const Vec3& m) {
+    Eigen::Index axis = 0;
+    m.cwiseAbs().maxCoeff(&axis);
+    return 2 * int(axis) + (m[axis] > 0 ? 1 : 0);
+  };
+  const auto count = [&](double least_solid) {
+    SerialExecutor serial;
+    return merge_patches({surface}, Joiner(surface), parted(surface, side),
+                         {.budget = 0.02,
+                          .cap = 0.08,
+                          .page_area = 1,
+                          .least_fill = 0.01,
+                          .least_solid = least_solid},
+                         serial)
+        .patches.size();
+  };
+  EXPECT_EQ(count(0.6), 1U);
+  EXPECT_GT(count(0.9), 1U);
+}
+
 /// A tube in two halves, rolled out: both stretches of their border are as long.
 struct Tube {
   SegmentationMesh surface;

@@ -41,15 +41,12 @@ TEST(MovingPart, HoldsWhatOtherFacesHaveToo) {
   EXPECT_FALSE(held.empty());
 }
 
-TEST(MovingPart, IsAllOfASmallRegionAndOfOneWithoutAMap) {
+TEST(MovingPart, IsAllWhereNothingIsMapped) {
   const CapWithFlap cap;
   const RegionMesh region = region_mesh(cap.surface, {}, cap.both.faces);
-  const std::size_t count = cap.both.faces.size();
-  for (const std::size_t mapped : {std::size_t{0}, count - count / 15}) {
-    const MovingPart part = moving_part(region, mapped, cap.both.uv);
-    EXPECT_EQ(part.faces.size(), count);
-    EXPECT_TRUE(part.held.empty());
-  }
+  const MovingPart part = moving_part(region, 0, cap.both.uv);
+  EXPECT_EQ(part.faces.size(), cap.both.faces.size());
+  EXPECT_TRUE(part.held.empty());
 }
 
 }  // namespace

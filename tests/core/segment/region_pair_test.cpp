@@ -50,8 +50,6 @@ TEST(RegionPair, TellsHowMuchLiesOnTheOtherMap) {
   EXPECT_EQ(sheet.covered(), 1);
 }
 
-/// The slit runs along the border's continuation: its two sides are boundary, whichever way the
-/// faces on them are joined elsewhere.
 TEST(RegionPair, TakesSlitsForBoundary) {
   SheetWithFlap sheet(30, 20, 10);
   const auto count = [&] {
@@ -105,15 +103,36 @@ TEST(Join, LaysTheSmallerBesideTheLarger) {
 /// .017 of the sheet is added, after .02: more than .03 since it was mapped as a whole.
 TEST(Join, MapsAllAnewOnceEnoughWasAdded) {
   const SheetWithFlap sheet(30, 20, 10);
-  MappedRegion rest = sheet.regions[0], flap = sheet.regions[1];
-  const MappedRegion once = beside(rest, flap, {});
+  MappedRegion rest = sheet.regions[0];
+  const MappedRegion& flap = sheet.regions[1];
+  const RegionPair pair(sheet.surface, rest.region, flap.region);
+  const Region laid = pair.place(pair.border(sheet.open)).both;
+  const MappedRegion once = unite(rest, flap, laid);
   EXPECT_EQ(once.region.mapped, rest.region.faces.size());
   EXPECT_DOUBLE_EQ(once.area_added, flap.area);
   rest.area_added = 0.02;
-  const MappedRegion twice = beside(rest, flap, {});
+  const MappedRegion twice = unite(rest, flap, laid);
   EXPECT_EQ(twice.region.mapped, 0U);
   EXPECT_EQ(twice.area_added, 0);
   EXPECT_NEAR(twice.area, 1, 1e-12);
+}
+
+/// Of 1,100 faces a rim of eight times a tenth would be most.
+TEST(Join, MapsAllAnewWhereTheRimWouldBeMostOfIt) {
+  MappedRegion large, small;
+  large.region.faces.resize(1000);
+  large.area = 0.98;
+  small.region.faces.resize(100);
+  small.area = 0.02;
+  Region laid;
+  laid.faces.resize(1100);
+  ASSERT_TRUE(is_small_beside(small.region, large.region));
+  const MappedRegion both = unite(large, small, laid);
+  EXPECT_EQ(both.region.mapped, 0U);
+  EXPECT_EQ(both.area_added, 0);
+  small.region.faces.resize(50);
+  laid.faces.resize(1050);
+  EXPECT_EQ(unite(large, small, laid).region.mapped, 1000U);
 }
 
 }  // namespace
