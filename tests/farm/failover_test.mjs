@@ -110,7 +110,11 @@ test(`${JOBS} jobs outlive the loss of the primary`, options, async (t) => {
 
   await t.test("the rate of a key is enforced, from a full minute", async () => {
     const codes = [];
-    for (let k = 0; k < RATE + 10; k++) codes.push((await withKey()).status);
+    for (const giveUp = Date.now() + 20_000; Date.now() < giveUp; await sleep(50)) {
+      codes[0] = (await withKey()).status; // a node may look for the new primary a little longer
+      if (codes[0] !== 503) break;
+    }
+    for (let k = 1; k < RATE + 10; k++) codes.push((await withKey()).status);
     assert.ok(codes.every((code) => [200, 429].includes(code)), String(codes));
     assert.ok(codes.includes(429) && codes.filter((code) => code === 200).length >= RATE, String(codes));
   });
