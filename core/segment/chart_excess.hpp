@@ -7,7 +7,7 @@
 
 #include "core/base/executor.hpp"
 #include "core/charts/charts.hpp"
-#include "core/segment/test_parameterization.hpp"
+#include "core/segment/base/test_parameterization.hpp"
 
 namespace unwrapd::segment {
 

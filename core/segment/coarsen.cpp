@@ -14,7 +14,7 @@
 #include "core/charts/seam_weight.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/mesh/edges.hpp"
-#include "core/segment/labels.hpp"
+#include "core/segment/base/labels.hpp"
 
 namespace unwrapd::segment {
 namespace {

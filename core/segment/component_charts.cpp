@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/measure/rest_triangle.hpp"
+#include "core/segment/base/search_extent.hpp"
 #include "core/segment/large_charts.hpp"
 #include "core/segment/region_charts.hpp"
-#include "core/segment/search_extent.hpp"
 #include "core/segment/segment_symmetrically.hpp"
 #include "core/segment/tighten.hpp"
 #include "core/segment/whole_chart.hpp"

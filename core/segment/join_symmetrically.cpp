@@ -11,9 +11,9 @@
 #include "core/base/cancel.hpp"
 #include "core/measure/distortion.hpp"
 #include "core/mesh/edges.hpp"
-#include "core/segment/merge.hpp"
-#include "core/segment/over_segment.hpp"
-#include "core/segment/partition_cost.hpp"
+#include "core/segment/base/merge.hpp"
+#include "core/segment/search/over_segment.hpp"
+#include "core/segment/search/partition_cost.hpp"
 
 namespace unwrapd::segment {
 namespace {
@@ -97,7 +97,7 @@ class SymmetricPartition {
     Segments segments{.regions = {},
                       .open = {},
                       .excess = total_excess(partition.patches),
-                      .seam_length = seam_length(surface_, partition)};
+                      .seam_length = search::seam_length(surface_, partition)};
     segments.open = std::move(partition.open);
     for (MappedRegion& own : partition.patches) segments.regions.push_back(std::move(own.region));
     return segments;

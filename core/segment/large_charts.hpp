@@ -6,7 +6,7 @@
 
 #include "core/base/executor.hpp"
 #include "core/charts/charts.hpp"
-#include "core/segment/search_extent.hpp"
+#include "core/segment/base/search_extent.hpp"
 #include "core/segment/segment.hpp"
 
 namespace unwrapd::segment {

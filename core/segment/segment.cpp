@@ -14,9 +14,9 @@
 #include <span>
 #include <utility>
 
-#include "core/segment/over_segment.hpp"
-#include "core/segment/partition_cost.hpp"
-#include "core/segment/shorten_seams.hpp"
+#include "core/segment/search/over_segment.hpp"
+#include "core/segment/search/partition_cost.hpp"
+#include "core/segment/search/shorten_seams.hpp"
 
 namespace unwrapd::segment {
 namespace {
@@ -55,18 +55,19 @@ SurfaceSegmentation::SurfaceSegmentation(const SegmentationMesh& surface, Segmen
       context_{surface, &progress_, nullptr, rules_.stop} {}
 
 Segments SurfaceSegmentation::first(double excess) {
-  patches_ = {over_segment(context_, excess, executor_),
+  patches_ = {search::over_segment(context_, excess, executor_),
               std::vector<char>(surface_.length.size(), 0)};
   merge_across_kept_edges();
   stage_ = Stage::merge;
   const MergeSettings settings = settings_for(excess);
   if (rules_.is_quick) return merge_quickly(settings);
-  MergeSearch& search = search_.emplace(
-      context_, patches_, settings, SearchPlan{search_extent(rules_.effort), steps_}, executor_);
+  search::MergeSearch& search =
+      search_.emplace(context_, patches_, settings,
+                      search::SearchPlan{search_extent(rules_.effort), steps_}, executor_);
   competing_ = search.merge_greedily();
   search.search_neighbourhoods(competing_);
   best_ = search.bisect_regions(finish(competing_));
-  shorten_in_parts(context_, settings, best_.partition);
+  search::shorten_in_parts(context_, settings, best_.partition);
   return segments_of(best_.partition);
 }
 
@@ -83,7 +84,7 @@ void SurfaceSegmentation::merge_across_kept_edges() {
 }
 
 /// The cheapest result of all candidates.
-Candidate SurfaceSegmentation::finish(std::vector<Candidate> all) {
+search::Candidate SurfaceSegmentation::finish(std::vector<search::Candidate> all) {
   all = search_->shorten_borders(std::move(all));
   all = search_->merge_again(std::move(all));
   all = search_->close_and_attach(std::move(all));
@@ -91,18 +92,18 @@ Candidate SurfaceSegmentation::finish(std::vector<Candidate> all) {
 }
 
 std::optional<Segments> SurfaceSegmentation::loosen(double excess) {
-  MergeSearch& search = *search_;
+  search::MergeSearch& search = *search_;
   if (!std::exchange(is_priced_, true)) best_ = search.price(std::move(best_));
   const double seam = best_.cost.length;
   if (seam <= 0) return std::nullopt;  // it needs no cut
   search.widen(settings_for(excess).budget, competing_);
-  std::vector<Candidate> all = competing_;
+  std::vector<search::Candidate> all = competing_;
   all.push_back(best_);
   search.forbid_seams_from(seam);
-  Candidate next = finish(std::move(all));
+  search::Candidate next = finish(std::move(all));
   if (next.cost.length < seam) {
     next = search.bisect_regions(std::move(next));
-    shorten_in_parts(context_, settings_for(excess), next.partition);
+    search::shorten_in_parts(context_, settings_for(excess), next.partition);
     next = search.price(std::move(next));
   }
   search.forbid_seams_from(std::numeric_limits<double>::infinity());
@@ -131,7 +132,7 @@ Segments SurfaceSegmentation::segments_of(Partition best) const {
   Segments segments{.regions = {},
                     .open = {},
                     .excess = total_excess(best.patches),
-                    .seam_length = seam_length(surface_, best)};
+                    .seam_length = search::seam_length(surface_, best)};
   segments.open = std::move(best.open);
   for (MappedRegion& patch : best.patches) segments.regions.push_back(std::move(patch.region));
   return segments;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/executor.hpp"
-#include "core/segment/merge_search.hpp"
-#include "core/segment/segmentation_mesh.hpp"
+#include "core/segment/base/segmentation_mesh.hpp"
+#include "core/segment/search/merge_search.hpp"
 #include "core/types/options.hpp"
 #include "core/types/progress.hpp"
 
@@ -82,7 +82,7 @@ class SurfaceSegmentation {
   void merge_across_kept_edges();
   [[nodiscard]] MergeSettings settings_for(double excess) const;
   [[nodiscard]] Segments merge_quickly(const MergeSettings& settings);
-  [[nodiscard]] Candidate finish(std::vector<Candidate> all);
+  [[nodiscard]] search::Candidate finish(std::vector<search::Candidate> all);
   [[nodiscard]] Segments segments_of(Partition best) const;
 
   const SegmentationMesh& surface_;
@@ -93,9 +93,9 @@ class SurfaceSegmentation {
   ProgressEstimate progress_;
   MergeContext context_;
   Partition patches_;
-  std::optional<MergeSearch> search_;
-  std::vector<Candidate> competing_;  ///< after large-neighbourhood search
-  Candidate best_;
+  std::optional<search::MergeSearch> search_;
+  std::vector<search::Candidate> competing_;  ///< after large-neighbourhood search
+  search::Candidate best_;
   bool is_priced_ = false;  ///< best_ is
   double forced_ = 0;       ///< see forced_excess()
 };

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/base/error.hpp"
-#include "core/segment/test_parameterization.hpp"
+#include "core/segment/base/test_parameterization.hpp"
 #include "core/solve/base/metric.hpp"
 #include "core/solve/maps/conformal.hpp"
 #include "core/solve/maps/fill_holes.hpp"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/segment/region_pair.hpp"
+#include "core/segment/base/region_pair.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment {

@@ -9,9 +9,9 @@
 #include "core/charts/cut.hpp"
 #include "core/charts/seam_weight.hpp"
 #include "core/charts/shortest_seam.hpp"
+#include "core/segment/base/segmentation_mesh.hpp"
 #include "core/segment/coarsen.hpp"
 #include "core/segment/large_charts.hpp"
-#include "core/segment/segmentation_mesh.hpp"
 #include "tests/core/segment/cut_up.hpp"
 #include "tests/core/two_threads.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/mesh/edges.hpp"
-#include "core/segment/close_slits.hpp"
+#include "core/segment/search/close_slits.hpp"
 #include "core/segment/segment_charts.hpp"
 #include "tests/core/shapes.hpp"
 
@@ -147,7 +147,7 @@ TEST(CloseSlits, ClosesOnesThatAreOfNoUse) {
   };
   Partition whole = slit_open(surface, on_line);
   EXPECT_GT(slit_length(surface, whole), 0.5);
-  close_slits({surface}, {.budget = 0.02, .cap = 0.08}, whole);
+  search::close_slits({surface}, {.budget = 0.02, .cap = 0.08}, whole);
   EXPECT_EQ(slit_length(surface, whole), 0);
   EXPECT_LT(whole.patches.front().excess.worst(), 1e-6);
 }
@@ -171,8 +171,8 @@ TEST(CloseSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound
     double last = slit_length(surface, open);
     for (const double bound : {0.01, 0.02, 0.2}) {
       Partition glued = open;
-      close_slits({surface}, {.budget = is_of_all ? bound : 1, .cap = is_of_all ? 1 : bound},
-                  glued);
+      search::close_slits({surface},
+                          {.budget = is_of_all ? bound : 1, .cap = is_of_all ? 1 : bound}, glued);
       EXPECT_LT(slit_length(surface, glued), last) << bound;
       last = slit_length(surface, glued);
       const MappedRegion& region = glued.patches.front();
@@ -193,10 +193,10 @@ TEST(CloseSlits, LeavesOneOpenWhereTheOthersHaveAllThatThereIs) {
   elsewhere.excess = {0.19, 0.19};
   const double before = slit_length(surface, open);
   Partition glued = open;
-  close_slits({surface}, {.budget = 1, .cap = 0.2}, glued);
+  search::close_slits({surface}, {.budget = 1, .cap = 0.2}, glued);
   EXPECT_EQ(slit_length(surface, glued), 0);
   glued = open;
-  close_slits({surface}, {.budget = 0.2, .cap = 0.2}, glued);
+  search::close_slits({surface}, {.budget = 0.2, .cap = 0.2}, glued);
   EXPECT_GT(slit_length(surface, glued), before / 2);
   EXPECT_LE((glued.patches[0].excess + glued.patches[1].excess).worst(), 0.2);
 }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "core/segment/base/segmentation_mesh.hpp"
 #include "core/segment/mirror.hpp"
 #include "core/segment/segment_symmetrically.hpp"
-#include "core/segment/segmentation_mesh.hpp"
 #include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
 

@@ -1,0 +1,146 @@
+// Where two regions meet along more than one stretch they close to a tube or a cap that cannot lie
+// flat, though glued along one stretch alone they would: a tube rolls out along a slit.
+//
+// Where the maps miss each other by much at the border, hardly any map of both is sound, and of
+// several stretches the longest may still be glued (ADR 0079). A wall that stands around a hole,
+// rolled out, misses the hole's edge by .24 of its length: sqrt(1/12 - 1/(4 pi^2)).
+//
+// Where most of a small region lies on the map of a large one before the trial, hardly any map of
+// both is sound (ADR 0080). Of regions of like sizes that tells too little: it saves half the time
+// that failures take where it also turns down a twentieth of what is sound.
+//
+// Rejected: lower bounds; most failures lie side by side as neatly as what is sound.
+#include "core/segment/base/join.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "core/base/cancel.hpp"
+#include "core/mesh/disjoint_sets.hpp"
+#include "core/mesh/edges.hpp"
+#include "core/segment/base/labels.hpp"
+#include "core/segment/base/region_mesh.hpp"
+#include "core/segment/base/region_pair.hpp"
+
+namespace unwrapd::segment {
+namespace {
+
+constexpr double kFlatDefect = 0.3;  // radians that the angles at a vertex may lack, or exceed
+constexpr double kMostMiss = 0.3;    // of the square root of the area of both
+constexpr double kMostMissOfBorder = 0.2;  // of the length of the border
+constexpr double kMostAdded = 0.03;        // of a region, before all of it is mapped anew
+constexpr std::size_t kManyFaces = 1000;   // faces
+constexpr std::size_t kSmall = 8;          // times fewer faces than a large region
+constexpr double kMostCovered = 0.5;       // of a small region
+constexpr std::size_t kFewFaces = 4;       // tell too little of what is covered
+
+/// Whether hardly any map of both would be sound. area: of both; length: of the border.
+bool is_hopeless(const RegionPair& pair, const Placement& placement, std::span<const char> open,
+                 double area, double length) {
+  if (placement.miss > kMostMiss * std::sqrt(area) || placement.miss > kMostMissOfBorder * length)
+    return true;
+  return pair.b().faces.size() >= kFewFaces && is_small_beside(pair.b(), pair.a()) &&
+         pair.covered(placement, open) > kMostCovered;
+}
+
+}  // namespace
+
+ExcessDistortion total_excess(std::span<const MappedRegion> regions) {
+  ExcessDistortion total;
+  for (const MappedRegion& region : regions) total += region.excess;
+  return total;
+}
+
+bool is_small_beside(const Region& b, const Region& a) {
+  return a.faces.size() >= std::max(kManyFaces, kSmall * b.faces.size());
+}
+
+MappedRegion unite(const MappedRegion& a, const MappedRegion& b, Region laid) {
+  MappedRegion both;
+  both.region = std::move(laid);
+  both.area = a.area + b.area;
+  const double added = a.area_added + b.area;
+  if (added > kMostAdded * both.area || !is_small_beside(b.region, a.region) ||
+      2 * moving_count(b.region.faces.size()) > both.region.faces.size())
+    return both;
+  both.area_added = added;
+  both.region.mapped = a.region.faces.size();
+  return both;
+}
+
+Joiner::Joiner(const SegmentationMesh& surface) : surface_(surface) {
+  std::vector<double> defect(surface.mesh.positions.size(), 2 * std::numbers::pi);
+  for (std::size_t t = 0; t < surface.mesh.faces.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      defect[surface.mesh.faces[t][(i + 2) % 3]] -= std::atan2(1.0, surface.rest[t].cot[i]);
+  for (const double d : defect) is_flat_.push_back(std::abs(d) <= kFlatDefect ? 1 : 0);
+}
+
+double Joiner::length_of(std::span<const Index> border) const {
+  double length = 0;
+  for (const Index h : border) length += surface_.length[h];
+  return length;
+}
+
+/// All of the border but its longest stretch; empty where it has but one.
+std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
+  DisjointSets stretches(border.size());
+  std::map<Index, Index> at;  // vertex -> a side of the border there
+  for (std::size_t k = 0; k < border.size(); ++k)
+    for (const Index v :
+         {start_of(surface_.mesh.faces, border[k]), end_of(surface_.mesh.faces, border[k])}) {
+      if (is_flat_[v] == 0) continue;
+      const auto [other, is_new] = at.try_emplace(v, static_cast<Index>(k));
+      if (!is_new) stretches.join(static_cast<Index>(k), other->second);
+    }
+  std::map<Index, double> length;
+  for (std::size_t k = 0; k < border.size(); ++k)
+    length[stretches.root(static_cast<Index>(k))] += surface_.length[border[k]];
+  const auto longest = std::ranges::max_element(
+      length, {}, [](const auto& stretch) { return rounded(stretch.second); });
+  std::vector<Index> slit;
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    if (stretches.root(static_cast<Index>(k)) == longest->first) continue;
+    slit.push_back(border[k]);
+    slit.push_back(surface_.halfedges.twin[border[k]]);
+  }
+  return slit;
+}
+
+Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
+                    double cap, const TestRules& trial) const {
+  if (is_small_beside(a.region, b.region)) return join(b, a, open, cap, trial);
+  const RegionPair pair(surface_, a.region, b.region);
+  const std::vector<Index> common = pair.border(open);
+  TestRules rules = trial;
+  rules.most_excess = std::max(cap * (a.area + b.area), (a.excess + b.excess).worst());
+  Joined joined;
+  const auto attempt = [&](std::span<const Index> glued, std::span<const char> cut) {
+    Placement placement = pair.place(glued);
+    joined.patch = {};
+    joined.verdict = Verdict::flawed;
+    if (is_hopeless(pair, placement, open, a.area + b.area, length_of(glued))) return;
+    joined.patch = unite(a, b, std::move(placement.both));
+    const TestResult result = test_parameterization(surface_, cut, rules, joined.patch.region);
+    joined.verdict = result.verdict;
+    joined.patch.excess = result.excess;
+    joined.patch.is_sound = result.verdict == Verdict::sound;
+  };
+  attempt(common, open);
+  if (joined.patch.is_sound || is_cancelled(trial.stop)) return joined;
+  joined.slit = slit_of(common);
+  if (joined.slit.empty()) return joined;
+  std::vector<char> cut(open.begin(), open.end());
+  for (const Index h : joined.slit) cut[h] = 1;
+  std::vector<Index> glued;
+  for (const Index h : common)
+    if (cut[h] == 0) glued.push_back(h);
+  const Joined whole = joined;
+  attempt(glued, cut);
+  return joined.patch.is_sound ? joined : whole;
+}
+
+}  // namespace unwrapd::segment
