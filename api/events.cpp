@@ -57,7 +57,7 @@ bool is_last(const Event& event) {
 }
 
 std::string sse_frame(const Event& event) {
-  const std::string data = event.data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string data = to_text(event.data);
   const std::string id = event.seq > 0 ? "id: " + std::to_string(event.seq) + "\n" : "";
   return id + "event: " + event.name + "\ndata: " + data + "\n\n";
 }

@@ -72,6 +72,10 @@ double finite(double value) {
   return value < 0 ? -largest : largest;
 }
 
+std::string to_text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string pointer_token(std::string_view text) { return json::pointer_token(text); }
 
 }  // namespace unwrapd::api

@@ -39,6 +39,9 @@ bool read_numbers(const Json& value, std::span<double> numbers);
 /// express it.
 double finite(double value);
 
+/// JSON as text on one line; what is not UTF-8 in it is replaced.
+std::string to_text(const Json& json);
+
 /// Escapes text ("~" and "/") as a token of a JSON pointer (RFC 6901).
 std::string pointer_token(std::string_view text);
 

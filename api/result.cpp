@@ -47,7 +47,7 @@ std::size_t expected_bytes(const UnwrappedSurface& surface) {
 void append_mesh(std::string& text, const Surface& surface, const UnwrappedSurface& unwrapped) {
   text.reserve(text.size() + expected_bytes(unwrapped));
   text += "{\"name\":";
-  text += Json(surface.name).dump(-1, ' ', false, Json::error_handler_t::replace);
+  text += to_text(surface.name);
   append_array(text, "positions", unwrapped.source, [&](Index source, const auto& put) {
     for (const double value : surface.mesh.positions[static_cast<std::size_t>(source)]) {
       put(finite(value));

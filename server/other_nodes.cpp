@@ -16,8 +16,8 @@ store::Node node_of(const config::Config& config) {
   return {.id = store::node_in(config.data), .is_shared = true, .keeps_work = keeps_work};
 }
 
-store::PostgresAddress database_of(const config::Config& config, const store::Node& node) {
-  store::PostgresAddress database = config.database;
+database::PostgresAddress database_of(const config::Config& config, const store::Node& node) {
+  database::PostgresAddress database = config.database;
   database.node = node.id;
   return database;
 }
@@ -27,22 +27,22 @@ std::filesystem::path blobs_root(const config::Config& config) {
   return config.shared_blobs.empty() ? config.data : config.shared_blobs;
 }
 
-store::BlobStore blobs_of(const config::Config& config, const store::Node& node, const Log& log) {
+blobs::BlobStore blobs_of(const config::Config& config, const store::Node& node, const Log& log) {
   if (config.bucket.url.empty())
-    return store::BlobStore(blobs_root(config), config.disk,
-                            node.is_shared ? store::Sharing::by_nodes : store::Sharing::none);
-  const store::SweepAges ages{.unknown = std::chrono::seconds(config.keep_seconds)};
+    return blobs::BlobStore(blobs_root(config), config.disk,
+                            node.is_shared ? blobs::Sharing::by_nodes : blobs::Sharing::none);
+  const blobs::SweepAges ages{.unknown = std::chrono::seconds(config.keep_seconds)};
   auto folders =
-      std::make_unique<store::BucketFolders>(bucket::address_of(config.bucket), node.id, ages, log);
+      std::make_unique<blobs::BucketFolders>(bucket::address_of(config.bucket), node.id, ages, log);
   return {blobs_root(config), config.disk, std::move(folders), config.copied_bytes};
 }
 
-store::DatabaseAddress rows_besides_jobs(const config::Config& config) {
-  const store::DatabaseAddress address = store::address_in(config.data, config.database);
+database::DatabaseAddress rows_besides_jobs(const config::Config& config) {
+  const database::DatabaseAddress address = store::address_in(config.data, config.database);
   return config.database.url.empty() ? address : address.shared();
 }
 
-access::KeyStore keys_of(const config::Config& config, const store::DatabaseAddress& rows) {
+access::KeyStore keys_of(const config::Config& config, const database::DatabaseAddress& rows) {
   if (config.database.url.empty()) return access::KeyStore(config.data, config.access.key_file);
   return {rows, config.access.key_file};
 }
@@ -52,8 +52,8 @@ std::string secret_of(const config::Config& config, const store::Node& node) {
   return node.is_shared ? access::shared_secret(config.database, own) : std::move(own);
 }
 
-OtherNodes::OtherNodes(const store::PostgresAddress& database, store::JobStore& store,
-                       store::BlobStore& blobs, jobs::EventFeed& events, jobs::JobQueue& queue,
+OtherNodes::OtherNodes(const database::PostgresAddress& database, store::JobStore& store,
+                       blobs::BlobStore& blobs, jobs::EventFeed& events, jobs::JobQueue& queue,
                        const Log& log) {
   if (!store.node().is_shared) return;
   store.on_found([&blobs](const store::JobRecord& job) {

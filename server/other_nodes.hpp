@@ -6,11 +6,11 @@
 
 #include "server/access/key_store.hpp"
 #include "server/base/log.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/config/config.hpp"
+#include "server/database/database_address.hpp"
 #include "server/jobs/event_exchange.hpp"
 #include "server/jobs/job_queue.hpp"
-#include "server/store/blob_store.hpp"
-#include "server/store/database_address.hpp"
 #include "server/store/job_store.hpp"
 
 namespace unwrapd::server {
@@ -18,24 +18,24 @@ namespace unwrapd::server {
 /// This node, with an id that lasts as long as its data directory.
 store::Node node_of(const config::Config& config);
 /// The database, as this node opens it to work on it.
-store::PostgresAddress database_of(const config::Config& config, const store::Node& node);
+database::PostgresAddress database_of(const config::Config& config, const store::Node& node);
 /// The directory of blobs/, incoming/ and lost/; of a bucket, of the copies of this node.
 std::filesystem::path blobs_root(const config::Config& config);
 /// The files of all jobs. Throws InsideError{storage_failed} where they are in a bucket that cannot
 /// be used.
-store::BlobStore blobs_of(const config::Config& config, const store::Node& node, const Log& log);
+blobs::BlobStore blobs_of(const config::Config& config, const store::Node& node, const Log& log);
 /// The rows of meshes, keys and webhooks. With a URL they use one connection, beside that of jobs.
-store::DatabaseAddress rows_besides_jobs(const config::Config& config);
+database::DatabaseAddress rows_besides_jobs(const config::Config& config);
 /// rows: of rows_besides_jobs(), whose tables are there.
-access::KeyStore keys_of(const config::Config& config, const store::DatabaseAddress& rows);
+access::KeyStore keys_of(const config::Config& config, const database::DatabaseAddress& rows);
 /// The secret that signs links and webhooks. The tables must be there.
 std::string secret_of(const config::Config& config, const store::Node& node);
 
 /// Exchanges news with other nodes while it exists; there are none where nothing is shared.
 class OtherNodes {
  public:
-  OtherNodes(const store::PostgresAddress& database, store::JobStore& store,
-             store::BlobStore& blobs, jobs::EventFeed& events, jobs::JobQueue& queue,
+  OtherNodes(const database::PostgresAddress& database, store::JobStore& store,
+             blobs::BlobStore& blobs, jobs::EventFeed& events, jobs::JobQueue& queue,
              const Log& log);
 
  private:

@@ -227,9 +227,9 @@ struct Service::Parts {
   const work::Isolation isolation;
   store::DataLock lock;
   const store::Node node;
-  store::BlobStore blobs;
+  blobs::BlobStore blobs;
   store::JobStore store;
-  const store::DatabaseAddress other_rows = rows_besides_jobs(config);
+  const database::DatabaseAddress other_rows = rows_besides_jobs(config);
   store::MeshStore mesh_store;
   store::QuotaReservations reservations{store};
   const uploads::UploadRooms rooms{reservations, blobs.room()};

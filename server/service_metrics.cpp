@@ -23,7 +23,7 @@ void tell_jobs(Metrics& metrics, jobs::JobQueue& queue) {
   tell_bundles("lost", shared.lost);
 }
 
-void tell_store(Metrics& metrics, store::BlobStore& blobs, const std::filesystem::path& root,
+void tell_store(Metrics& metrics, blobs::BlobStore& blobs, const std::filesystem::path& root,
                 webhooks::Webhooks& webhooks) {
   metrics.tell(Metric::webhooks_due, {}, [&webhooks] { return webhooks.due_count(); });
   metrics.tell(Metric::stored_bytes, {}, [&blobs] { return blobs.room().used_bytes(); });

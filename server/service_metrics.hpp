@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "server/base/metrics.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/http/http_server.hpp"
 #include "server/jobs/job_queue.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/webhooks/webhooks.hpp"
 #include "server/work/solver_cache.hpp"
 
@@ -22,7 +22,7 @@ struct MadeFiles {
 /// What is told of must outlive the metrics.
 void tell_jobs(Metrics& metrics, jobs::JobQueue& queue);
 /// root: where the files are.
-void tell_store(Metrics& metrics, store::BlobStore& blobs, const std::filesystem::path& root,
+void tell_store(Metrics& metrics, blobs::BlobStore& blobs, const std::filesystem::path& root,
                 webhooks::Webhooks& webhooks);
 void tell_connections(Metrics& metrics, const http::HttpServer& http);
 void tell_caches(Metrics& metrics, const work::SolverCache& solver, const MadeFiles& files);

@@ -9,7 +9,7 @@
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
-#include "server/store/schema.hpp"
+#include "server/database/schema.hpp"
 
 namespace unwrapd::server::access {
 namespace {
@@ -39,26 +39,26 @@ constexpr std::string_view kSelect =
     " FROM keys ";
 constexpr int kDigestColumn = 7;
 
-std::shared_ptr<store::Database> opened(const std::filesystem::path& data,
-                                        const store::PostgresAddress& database,
-                                        KeyStore::Tables tables) {
+std::shared_ptr<database::Database> opened(const std::filesystem::path& data,
+                                           const database::PostgresAddress& database,
+                                           KeyStore::Tables tables) {
   if (!database.url.empty()) {
-    auto all = store::DatabaseAddress(database).open();
+    auto all = database::DatabaseAddress(database).open();
     if (tables == KeyStore::Tables::existing) {
-      store::require_current(*all);
+      database::require_current(*all);
     } else {
-      store::migrate(*all);
+      database::migrate(*all);
     }
     return all;
   }
   make_directories(data);
-  auto keys = store::DatabaseAddress(data / kKeysFile).open();
+  auto keys = database::DatabaseAddress(data / kKeysFile).open();
   keys->check(false);
   keys->run(kSchema);
   return keys;
 }
 
-ApiKey key_of(const store::Statement& row) {
+ApiKey key_of(const database::Statement& row) {
   return {.id = row.text(0),
           .name = row.text(1),
           .scopes = parse_scopes(row.text(2)),
@@ -153,12 +153,12 @@ std::string to_text(const Scopes& scopes) {
 }
 
 KeyStore::KeyStore(const std::filesystem::path& data, const std::filesystem::path& given,
-                   const store::PostgresAddress& database, Tables tables)
+                   const database::PostgresAddress& database, Tables tables)
     : database_(opened(data, database, tables)),
       given_(given.empty() ? "" : sha256(key_in(given))),
       is_shared_(!database.url.empty()) {}
 
-KeyStore::KeyStore(const store::DatabaseAddress& database, const std::filesystem::path& given)
+KeyStore::KeyStore(const database::DatabaseAddress& database, const std::filesystem::path& given)
     : database_(database.open()),
       given_(given.empty() ? "" : sha256(key_in(given))),
       is_shared_(true) {}
@@ -169,7 +169,7 @@ std::string KeyStore::add(ApiKey key) {
   const std::string text = std::string(kPrefix) + digits + "_" + random_hex(kSecretDigits / 2);
   const std::lock_guard lock(mutex_);
   database_->change([&] {
-    store::Statement(
+    database::Statement(
         *database_,
         "INSERT INTO keys (id, name, sha256, scopes, requests_per_minute, max_jobs, max_bytes,"
         " created_ms) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
@@ -187,7 +187,7 @@ std::optional<ApiKey> KeyStore::find(std::string_view text) {
   if (!of_form) return std::nullopt;
   const std::string id = "k_" + std::string(text.substr(kPrefix.size(), kIdDigits));
   const std::lock_guard lock(mutex_);
-  store::Statement statement(*database_, std::string(kSelect) + "WHERE id = ?");
+  database::Statement statement(*database_, std::string(kSelect) + "WHERE id = ?");
   if (!statement.with(id).step()) return std::nullopt;
   if (!same(statement.text(kDigestColumn), sha256(text))) return std::nullopt;
   return key_of(statement);
@@ -198,14 +198,14 @@ bool KeyStore::has_any() { return !given_.empty() || !all().empty(); }
 std::optional<ApiKey> KeyStore::with_id(std::string_view id) {
   if (!given_.empty() && id == kGivenKeyId) return given_key(given_);
   const std::lock_guard lock(mutex_);
-  store::Statement statement(*database_, std::string(kSelect) + "WHERE id = ?");
+  database::Statement statement(*database_, std::string(kSelect) + "WHERE id = ?");
   if (!statement.with(id).step()) return std::nullopt;
   return key_of(statement);
 }
 
 std::vector<ApiKey> KeyStore::all() {
   const std::lock_guard lock(mutex_);
-  store::Statement statement(*database_, std::string(kSelect) + "ORDER BY seq");
+  database::Statement statement(*database_, std::string(kSelect) + "ORDER BY seq");
   std::vector<ApiKey> keys;
   while (statement.step()) keys.push_back(key_of(statement));
   return keys;
@@ -222,7 +222,7 @@ int KeyStore::wait_seconds(const ApiKey& key, double cost) {
 bool KeyStore::remove(std::string_view id) {
   const std::lock_guard lock(mutex_);
   return database_->change([&] {
-    store::Statement(*database_, "DELETE FROM keys WHERE id = ?").with(id).run();
+    database::Statement(*database_, "DELETE FROM keys WHERE id = ?").with(id).run();
     return database_->changes() == 1;
   });
 }

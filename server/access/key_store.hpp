@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "server/access/rate_limit.hpp"
+#include "server/database/database_address.hpp"
 #include "server/http/http.hpp"
-#include "server/store/database_address.hpp"
 
 namespace unwrapd::server::access {
 
@@ -59,9 +59,9 @@ class KeyStore {
   /// Throws Error{invalid_option} when that holds no key: 32 to 512 letters, digits and -._~+/=,
   /// and white space around them.
   explicit KeyStore(const std::filesystem::path& data, const std::filesystem::path& given = {},
-                    const store::PostgresAddress& database = {}, Tables tables = Tables::made);
+                    const database::PostgresAddress& database = {}, Tables tables = Tables::made);
   /// Of a database with a URL whose tables are there. given: as above.
-  KeyStore(const store::DatabaseAddress& database, const std::filesystem::path& given);
+  KeyStore(const database::DatabaseAddress& database, const std::filesystem::path& given);
 
   /// Stores a key with a new id and returns what its holder sends; it cannot be had again. Throws
   /// Error{invalid_option} for a name with control characters, which a list could not show.
@@ -82,7 +82,7 @@ class KeyStore {
 
  private:
   std::mutex mutex_;
-  const std::shared_ptr<store::Database> database_;
+  const std::shared_ptr<database::Database> database_;
   const std::string given_;  // SHA-256; empty: none
   const bool is_shared_;     // with other nodes
   RateLimit rates_;

@@ -33,8 +33,8 @@ int RateLimit::wait_seconds(const std::string& key, std::int64_t per_minute, Clo
 // A bucket is kept as the time at which it will be full again: a request puts that off by the time
 // that its tokens need, and may go on if it is no more than a minute away. `excluded` is what a
 // full bucket would get, now + ?2. A time that is two minutes away is of a clock that was set back.
-int wait_seconds_of_all(store::Database& database, const std::string& key, std::int64_t per_minute,
-                        double cost) {
+int wait_seconds_of_all(database::Database& database, const std::string& key,
+                        std::int64_t per_minute, double cost) {
   const auto take_us = static_cast<std::int64_t>(
       std::ceil(cost * static_cast<double>(kUsPerMinute) / static_cast<double>(per_minute)));
   const std::string next =
@@ -42,16 +42,16 @@ int wait_seconds_of_all(store::Database& database, const std::string& key, std::
       " THEN 0 ELSE rates.full_us + ?2 END, excluded.full_us)";
   return database.change([&] {
     // Of no worth after a crash: nobody waits for the disk, or for a standby.
-    store::Statement(database, "SELECT set_config('synchronous_commit', 'off', true)").run();
-    store::Statement(database,
-                     "INSERT INTO rates (key, full_us)"
-                     " SELECT ?1, (EXTRACT(EPOCH FROM clock_timestamp()) * 1000000)::bigint + ?2"
-                     " ON CONFLICT (key) DO UPDATE SET full_us = " +
-                         next + " WHERE " + next + " <= excluded.full_us - ?2 + ?3")
+    database::Statement(database, "SELECT set_config('synchronous_commit', 'off', true)").run();
+    database::Statement(database,
+                        "INSERT INTO rates (key, full_us)"
+                        " SELECT ?1, (EXTRACT(EPOCH FROM clock_timestamp()) * 1000000)::bigint + ?2"
+                        " ON CONFLICT (key) DO UPDATE SET full_us = " +
+                            next + " WHERE " + next + " <= excluded.full_us - ?2 + ?3")
         .with(key, take_us, kUsPerMinute)
         .run();
     if (database.changes() == 1) return 0;
-    store::Statement full(
+    database::Statement full(
         database,
         "SELECT full_us - (EXTRACT(EPOCH FROM clock_timestamp()) * 1000000)::bigint FROM rates"
         " WHERE key = ?1");

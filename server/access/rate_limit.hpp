@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "server/store/database.hpp"
+#include "server/database/database.hpp"
 
 namespace unwrapd::server::access {
 
@@ -32,7 +32,7 @@ class RateLimit {
 
 /// The same for all nodes of a database with a URL, exactly, by the clock of that database. cost:
 /// at most per_minute.
-int wait_seconds_of_all(store::Database& database, const std::string& key, std::int64_t per_minute,
-                        double cost);
+int wait_seconds_of_all(database::Database& database, const std::string& key,
+                        std::int64_t per_minute, double cost);
 
 }  // namespace unwrapd::server::access

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "server/store/database_address.hpp"
+#include "server/database/database_address.hpp"
 
 namespace unwrapd::server::access {
 
 /// The secret in the database; own becomes it where there is none yet.
-std::string shared_secret(const store::DatabaseAddress& address, const std::string& own);
+std::string shared_secret(const database::DatabaseAddress& address, const std::string& own);
 /// The same; nothing where no node has shared one, or in a file.
-std::optional<std::string> known_shared_secret(const store::PostgresAddress& address);
+std::optional<std::string> known_shared_secret(const database::PostgresAddress& address);
 
 }  // namespace unwrapd::server::access

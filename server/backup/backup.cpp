@@ -13,10 +13,10 @@
 #include "server/base/errors.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
+#include "server/database/schema.hpp"
+#include "server/database/sqlite_database.hpp"
 #include "server/store/data_directory.hpp"
 #include "server/store/job_rows.hpp"
-#include "server/store/schema.hpp"
-#include "server/store/sqlite_database.hpp"
 
 namespace unwrapd::server::backup {
 namespace {
@@ -46,7 +46,7 @@ void add_counts(const FolderCopy& copy, StoreReport& report) {
 }
 
 /// The folders of the copied rows; the rows of those that ended or went meanwhile are left out.
-void copy_folders(const store::Database& live, store::Database& copied, const fs::path& data,
+void copy_folders(const database::Database& live, database::Database& copied, const fs::path& data,
                   const fs::path& to, StoreReport& report) {
   FolderCopy copy(data / kBlobs, to / kBlobs);
   std::int64_t gone = 0;
@@ -58,8 +58,8 @@ void copy_folders(const store::Database& live, store::Database& copied, const fs
       continue;
     }
     remove_tree(to / kBlobs / folder.name);
-    store::Statement(copied, "DELETE FROM jobs WHERE id = ?").with(folder.name).run();
-    store::Statement(copied, "DELETE FROM meshes WHERE id = ?").with(folder.name).run();
+    database::Statement(copied, "DELETE FROM jobs WHERE id = ?").with(folder.name).run();
+    database::Statement(copied, "DELETE FROM meshes WHERE id = ?").with(folder.name).run();
     ++gone;
   }
   add_counts(copy, report);
@@ -74,20 +74,20 @@ api::Json copy_beside(const fs::path& data, const fs::path& to) {
   for (const char* file : {access::kSecretFile, kNotedFile})
     if (fs::exists(data / file)) digests[file] = copy_private(data / file, to / file);
   if (fs::exists(data / access::kKeysFile))
-    store::SqliteDatabase(data / access::kKeysFile).copy_to(to / access::kKeysFile);
+    database::SqliteDatabase(data / access::kKeysFile).copy_to(to / access::kKeysFile);
   for (const char* file : {store::kStoreFile, access::kKeysFile}) {
     if (!fs::exists(to / file)) continue;
     fs::permissions(to / file, fs::perms::owner_read | fs::perms::owner_write);
-    digests[file] = store::sha256_of(File::open(to / file));
+    digests[file] = blobs::sha256_of(File::open(to / file));
   }
   return digests;
 }
 
 void make_backup(const fs::path& data, const fs::path& to, StoreReport& report) {
-  const store::SqliteDatabase live(data / store::kStoreFile);
+  const database::SqliteDatabase live(data / store::kStoreFile);
   live.copy_to(to / store::kStoreFile);
   {
-    store::SqliteDatabase copied(to / store::kStoreFile);
+    database::SqliteDatabase copied(to / store::kStoreFile);
     copied.check(true);
     copy_folders(live, copied, data, to, report);
     copied.run("UPDATE jobs SET state = 'queued', lease_ms = 0 WHERE state = 'running'");
@@ -118,7 +118,7 @@ void check_beside(const fs::path& backup, const api::Json& manifest) {
     not_whole(backup, std::string(kManifestFile) + " does not name " + store::kStoreFile);
   for (const auto& [file, digest] : manifest["sha256"].items()) {
     const bool is_whole = is_file_name(file) && fs::is_regular_file(backup / file) &&
-                          digest == store::sha256_of(File::open(backup / file));
+                          digest == blobs::sha256_of(File::open(backup / file));
     if (!is_whole) not_whole(backup, file + " is missing or damaged");
   }
 }
@@ -135,9 +135,9 @@ bool was_told(const api::Json& manifest, const std::string& damage) {
 void check_backup(const fs::path& backup) {
   const api::Json manifest = read_manifest(backup);
   check_beside(backup, manifest);
-  const store::SqliteDatabase store(backup / store::kStoreFile,
-                                    store::SqliteDatabase::Access::read);
-  store::refuse_newer(store);
+  const database::SqliteDatabase store(backup / store::kStoreFile,
+                                       database::SqliteDatabase::Access::read);
+  database::refuse_newer(store);
   store.check(true);
   FolderCopy look(backup / kBlobs);
   for (const KnownFolder& folder : known_folders(store))
@@ -147,9 +147,9 @@ void check_backup(const fs::path& backup) {
 }
 
 /// The rows that cannot be read.
-void check_rows(const store::Database& store, StoreReport& report) {
+void check_rows(const database::Database& store, StoreReport& report) {
   for (std::int64_t last = 0;;) {
-    store::Statement rows(store, store::select_jobs("WHERE seq > ? ORDER BY seq LIMIT ?"));
+    database::Statement rows(store, store::select_jobs("WHERE seq > ? ORDER BY seq LIMIT ?"));
     const std::vector<store::JobRecord> jobs = store::job_rows(rows.with(last, kRowsAtOnce));
     if (jobs.empty()) return;
     for (const store::JobRecord& job : jobs)
@@ -159,14 +159,14 @@ void check_rows(const store::Database& store, StoreReport& report) {
 }
 
 /// Folders that the next start will set aside. One whose row is about to come is no such.
-void note_unknown(const fs::path& data, const store::Database& store, StoreReport& report) {
+void note_unknown(const fs::path& data, const database::Database& store, StoreReport& report) {
   std::error_code none;
   std::int64_t unknown = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(data / kBlobs, none)) {
     const std::string name = entry.path().filename();
-    store::Statement row(store,
-                         "SELECT 1 FROM (SELECT id FROM jobs UNION ALL SELECT id FROM meshes)"
-                         " WHERE id = ?");
+    database::Statement row(store,
+                            "SELECT 1 FROM (SELECT id FROM jobs UNION ALL SELECT id FROM meshes)"
+                            " WHERE id = ?");
     if (!row.with(name).step() && fs::exists(entry.path(), none)) ++unknown;
   }
   if (unknown > 0)
@@ -177,7 +177,7 @@ void note_unknown(const fs::path& data, const store::Database& store, StoreRepor
   if (lost > 0) report.notices.push_back(std::to_string(lost) + " folders are set aside in lost");
 }
 
-void check_database(const store::SqliteDatabase& database, StoreReport& report) {
+void check_database(const database::SqliteDatabase& database, StoreReport& report) {
   try {
     database.check(true);
   } catch (const Error& error) {
@@ -211,7 +211,7 @@ StoreReport back_up(const fs::path& data, const fs::path& to) {
                 to.string() +
                     " lies in the data directory, and the server removes unknown files there; name "
                     "a folder outside of it.");
-  store::require_current(store::SqliteDatabase(data / store::kStoreFile));
+  database::require_current(database::SqliteDatabase(data / store::kStoreFile));
   const fs::path part = fs::path(to) += ".part";
   for (const fs::path& there : {to, part}) {
     if (!fs::exists(fs::symlink_status(there))) continue;
@@ -240,8 +240,8 @@ StoreReport restore(const fs::path& backup, const fs::path& data) {
   StoreReport report;
   make_directories(data / kBlobs);
   FolderCopy copy(backup / kBlobs, data / kBlobs);
-  const store::SqliteDatabase store(backup / store::kStoreFile,
-                                    store::SqliteDatabase::Access::read);
+  const database::SqliteDatabase store(backup / store::kStoreFile,
+                                       database::SqliteDatabase::Access::read);
   for (const KnownFolder& folder : known_folders(store))
     for (std::string& what : copy.take(folder)) report.damaged.push_back(std::move(what));
   add_counts(copy, report);
@@ -257,14 +257,14 @@ StoreReport check_store(const fs::path& data) {
   StoreReport report;
   const bool is_backup = fs::exists(data / kManifestFile);
   const auto access =
-      is_backup ? store::SqliteDatabase::Access::read : store::SqliteDatabase::Access::write;
+      is_backup ? database::SqliteDatabase::Access::read : database::SqliteDatabase::Access::write;
   if (is_backup) check_beside(data, read_manifest(data));
-  const store::SqliteDatabase store(data / store::kStoreFile, access);
+  const database::SqliteDatabase store(data / store::kStoreFile, access);
   check_database(store, report);
   if (fs::exists(data / access::kKeysFile))
-    check_database(store::SqliteDatabase(data / access::kKeysFile, access), report);
+    check_database(database::SqliteDatabase(data / access::kKeysFile, access), report);
   if (!report.damaged.empty()) return report;  // what it says of the files means nothing
-  store::require_current(store);
+  database::require_current(store);
   check_rows(store, report);
   FolderCopy look(data / kBlobs);
   for (const KnownFolder& folder : known_folders(store)) {

@@ -9,7 +9,7 @@
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
-#include "server/store/blob_files.hpp"
+#include "server/blobs/blob_files.hpp"
 
 namespace unwrapd::server::backup {
 namespace {
@@ -35,8 +35,8 @@ void each_piece(const File& file, const Use& use) {
 
 }  // namespace
 
-std::vector<KnownFolder> known_folders(const store::Database& store) {
-  store::Statement rows(store, std::string(kKnown) + " ORDER BY 1");
+std::vector<KnownFolder> known_folders(const database::Database& store) {
+  database::Statement rows(store, std::string(kKnown) + " ORDER BY 1");
   std::vector<KnownFolder> found;
   while (rows.step())
     if (std::string name = rows.text(0); is_file_name(name))
@@ -44,8 +44,8 @@ std::vector<KnownFolder> known_folders(const store::Database& store) {
   return found;
 }
 
-bool is_known(const store::Database& store, const std::string& name) {
-  store::Statement rows(store, "SELECT 1 FROM (" + std::string(kKnown) + ") WHERE id = ?");
+bool is_known(const database::Database& store, const std::string& name) {
+  database::Statement rows(store, "SELECT 1 FROM (" + std::string(kKnown) + ") WHERE id = ?");
   return rows.with(name).step();
 }
 
@@ -90,12 +90,12 @@ std::string FolderCopy::take_file(const std::string& folder, const std::string& 
 
 std::vector<std::string> FolderCopy::take_once(const KnownFolder& folder, FolderCounts& counts) {
   std::vector<std::string> damaged;
-  store::Digests digests = store::read_digests(from_ / folder.name);
+  blobs::Digests digests = blobs::read_digests(from_ / folder.name);
   if (digests.empty()) return {folder.name + "/digests is missing"};
   if (folder.inputs_only)
-    std::erase_if(digests, [](const auto& f) { return !store::is_input(f.first); });
+    std::erase_if(digests, [](const auto& f) { return !blobs::is_input(f.first); });
   if (!to_.empty()) make_directories(to_ / folder.name);
-  store::Digests taken;
+  blobs::Digests taken;
   for (const auto& [file, digest] : digests) {
     const std::string wrong =
         is_file_name(file) ? take_file(folder.name, file, digest) : " is not a file name";
@@ -108,7 +108,7 @@ std::vector<std::string> FolderCopy::take_once(const KnownFolder& folder, Folder
     counts.bytes += static_cast<std::int64_t>(fs::file_size(from_ / folder.name / file));
   }
   if (!to_.empty())
-    write_file_unsynced(to_ / folder.name / store::kDigestsFile, store::to_text(taken));
+    write_file_unsynced(to_ / folder.name / blobs::kDigestsFile, blobs::to_text(taken));
   return damaged;
 }
 

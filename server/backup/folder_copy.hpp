@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "server/store/database.hpp"
-#include "server/store/digests.hpp"
+#include "server/blobs/digests.hpp"
+#include "server/database/database.hpp"
 
 namespace unwrapd::server::backup {
 
@@ -20,9 +20,9 @@ struct KnownFolder {
 };
 
 /// In the order of their names, meshes last.
-std::vector<KnownFolder> known_folders(const store::Database& store);
+std::vector<KnownFolder> known_folders(const database::Database& store);
 /// Whether it still is one.
-bool is_known(const store::Database& store, const std::string& name);
+bool is_known(const database::Database& store, const std::string& name);
 
 /// What a pass over folders has seen.
 struct FolderCounts {

@@ -8,9 +8,9 @@
 #include "core/base/error.hpp"
 #include "server/access/key_store.hpp"
 #include "server/base/files.hpp"
+#include "server/database/schema.hpp"
+#include "server/database/sqlite_database.hpp"
 #include "server/store/data_directory.hpp"
-#include "server/store/schema.hpp"
-#include "server/store/sqlite_database.hpp"
 
 namespace unwrapd::server::backup {
 namespace {
@@ -25,8 +25,8 @@ struct Column {
   bool is_number;
 };
 
-std::vector<Column> columns_of(const store::Database& database, const std::string& table) {
-  store::Statement rows(database, "SELECT name, type FROM pragma_table_info(?)");
+std::vector<Column> columns_of(const database::Database& database, const std::string& table) {
+  database::Statement rows(database, "SELECT name, type FROM pragma_table_info(?)");
   rows.with(table);
   std::vector<Column> columns;
   while (rows.step()) columns.push_back({rows.text(0), rows.text(1) != "TEXT"});
@@ -49,24 +49,24 @@ std::string places_of(const std::vector<Column>& columns) {
 }
 
 /// Numbers of rows that the other engine gives next follow those that are there.
-void raise_sequence(store::Database& to, const std::string& table) {
-  store::Statement(to,
-                   "SELECT setval(pg_get_serial_sequence(?1, 'seq'),"
-                   " GREATEST((SELECT MAX(seq) FROM " +
-                       table + "), 1))")
+void raise_sequence(database::Database& to, const std::string& table) {
+  database::Statement(to,
+                      "SELECT setval(pg_get_serial_sequence(?1, 'seq'),"
+                      " GREATEST((SELECT MAX(seq) FROM " +
+                          table + "), 1))")
       .with(table)
       .run();
 }
 
-std::int64_t copy_table(const store::Database& from, store::Database& to,
+std::int64_t copy_table(const database::Database& from, database::Database& to,
                         const std::string& table) {
   const std::vector<Column> columns = columns_of(from, table);
-  store::Statement rows(from, "SELECT " + joined(columns) + " FROM " + table);
+  database::Statement rows(from, "SELECT " + joined(columns) + " FROM " + table);
   const std::string insert = "INSERT INTO " + table + " (" + joined(columns) +
                              ") OVERRIDING SYSTEM VALUE VALUES (" + places_of(columns) + ")";
   std::int64_t count = 0;
   for (; rows.step(); ++count) {
-    store::Statement row(to, insert);
+    database::Statement row(to, insert);
     for (int k = 0; k < static_cast<int>(columns.size()); ++k)
       columns[static_cast<std::size_t>(k)].is_number ? row.bind(k + 1, rows.number(k))
                                                      : row.bind(k + 1, rows.text(k));
@@ -76,9 +76,9 @@ std::int64_t copy_table(const store::Database& from, store::Database& to,
   return count;
 }
 
-void require_empty(const store::Database& to) {
+void require_empty(const database::Database& to) {
   for (const char* table : {"jobs", "meshes", "keys"})
-    if (store::number_of(to, "SELECT COUNT(*) FROM " + std::string(table)) > 0)
+    if (database::number_of(to, "SELECT COUNT(*) FROM " + std::string(table)) > 0)
       throw Error(ErrorCode::invalid_option,
                   std::string("The database of --database has rows in its table ") + table +
                       "; give one that no unwrapd has used.");
@@ -90,7 +90,7 @@ void put_aside(const fs::path& file) {
 
 }  // namespace
 
-StoreReport move_rows(const fs::path& data, const store::PostgresAddress& to) {
+StoreReport move_rows(const fs::path& data, const database::PostgresAddress& to) {
   const fs::path jobs = data / store::kStoreFile;
   const fs::path keys = data / access::kKeysFile;
   if (!fs::is_regular_file(jobs))
@@ -99,13 +99,13 @@ StoreReport move_rows(const fs::path& data, const store::PostgresAddress& to) {
   const store::DataLock lock(data);
   StoreReport report;
   {
-    store::SqliteDatabase from(jobs);
+    database::SqliteDatabase from(jobs);
     from.check(true);
-    store::migrate(from);
+    database::migrate(from);
     from.transact([&] { from.run("UPDATE jobs SET state = 'queued' WHERE state = 'running'"); });
-    const std::shared_ptr<store::Database> there = store::DatabaseAddress(to).open();
+    const std::shared_ptr<database::Database> there = database::DatabaseAddress(to).open();
     there->claim();
-    store::migrate(*there);
+    database::migrate(*there);
     require_empty(*there);
     report.jobs = there->transact([&] {
       there->run("DELETE FROM written");
@@ -114,7 +114,7 @@ StoreReport move_rows(const fs::path& data, const store::PostgresAddress& to) {
         const std::int64_t rows = copy_table(from, *there, table);
         if (table == "jobs" || table == "meshes") count += rows;
       }
-      if (fs::exists(keys)) copy_table(store::SqliteDatabase(keys), *there, "keys");
+      if (fs::exists(keys)) copy_table(database::SqliteDatabase(keys), *there, "keys");
       return count;
     });
   }

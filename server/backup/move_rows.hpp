@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "server/backup/backup.hpp"
-#include "server/store/postgres_address.hpp"
+#include "server/database/postgres_address.hpp"
 
 namespace unwrapd::server::backup {
 
@@ -13,6 +13,6 @@ namespace unwrapd::server::backup {
 /// were running wait again. Throws Error, and nothing is moved: not_found where there is no store,
 /// invalid_option for a database that has jobs, meshes or keys, storage_failed for a directory in
 /// use.
-StoreReport move_rows(const std::filesystem::path& data, const store::PostgresAddress& to);
+StoreReport move_rows(const std::filesystem::path& data, const database::PostgresAddress& to);
 
 }  // namespace unwrapd::server::backup

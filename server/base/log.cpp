@@ -14,17 +14,15 @@ namespace {
 
 constexpr std::array kLevelNames = {"debug", "info", "warning", "error"};
 
-std::string dump(const api::Json& value) {
-  return value.dump(-1, ' ', false, api::Json::error_handler_t::replace);
-}
-
 /// The first three members bare, the others by name.
 std::string text_of(const api::Json& line) {
   std::string text;
   int at = 0;
   for (const auto& [name, value] : line.items()) {
     if (at > 0) text += ' ';
-    text += at < 2 ? value.get<std::string>() : at == 2 ? dump(value) : name + "=" + dump(value);
+    text += at < 2    ? value.get<std::string>()
+            : at == 2 ? api::to_text(value)
+                      : name + "=" + api::to_text(value);
     ++at;
   }
   return text;
@@ -48,7 +46,7 @@ void Log::write(LogLevel level, std::string_view event, const api::Json& fields)
                     {"event", event}};
   if (!current_trace().empty()) line["trace"] = current_trace();
   if (fields.is_object()) line.update(fields);
-  lines_->info("{}", format_ == LogFormat::json ? dump(line) : text_of(line));
+  lines_->info("{}", format_ == LogFormat::json ? api::to_text(line) : text_of(line));
 }
 
 }  // namespace unwrapd::server

@@ -12,11 +12,11 @@
 #include "api/limits.hpp"
 #include "server/access/access.hpp"
 #include "server/base/log.hpp"
+#include "server/blobs/disk_budget.hpp"
 #include "server/bucket/bucket_config.hpp"
+#include "server/database/postgres_address.hpp"
 #include "server/http/addresses.hpp"
 #include "server/sources/sources.hpp"
-#include "server/store/disk_budget.hpp"
-#include "server/store/postgres_address.hpp"
 #include "server/webhooks/webhook_url.hpp"
 #include "server/work/solver_cache.hpp"
 
@@ -44,7 +44,7 @@ struct Config {
   /// after that of listen, on loopback, where nothing else is asked for.
   std::optional<http::Address> admin;
   std::filesystem::path data = "data";
-  store::PostgresAddress database;     ///< without a URL: SQLite in data
+  database::PostgresAddress database;  ///< without a URL: SQLite in data
   std::filesystem::path shared_blobs;  ///< of the files of all nodes; empty: in data, of this alone
   bucket::BucketConfig bucket;         ///< with a URL: that of the files of all nodes
   std::int64_t copied_bytes = 10'000'000'000;  ///< of the bucket's files, in data
@@ -58,7 +58,7 @@ struct Config {
   Isolate isolate = Isolate::automatic;
   LogLevel log_level = LogLevel::info;
   LogFormat log_format = LogFormat::json;
-  store::DiskLimits disk;
+  blobs::DiskLimits disk;
   access::AccessConfig access;
   std::vector<std::string> allowed_hosts;  ///< without keys, beside addresses and localhost
   std::vector<std::string> cors_origins;

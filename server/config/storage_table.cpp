@@ -114,10 +114,10 @@ ConfigGroup storing() {
               number({"max-disk-bytes", "N",
                       "Bytes on disk for the files of all jobs; beyond it, the oldest results are "
                       "deleted early. 0: no limit"},
-                     {0, kMaxDiskBytes}, &Config::disk, &store::DiskLimits::max_bytes),
+                     {0, kMaxDiskBytes}, &Config::disk, &blobs::DiskLimits::max_bytes),
               number({"min-free-bytes", "N",
                       "Bytes of the disk that uploads leave free; results leave half of it free"},
-                     {0, kMaxDiskBytes}, &Config::disk, &store::DiskLimits::min_free_bytes)}};
+                     {0, kMaxDiskBytes}, &Config::disk, &blobs::DiskLimits::min_free_bytes)}};
 }
 
 }  // namespace unwrapd::server::config

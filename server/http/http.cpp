@@ -68,8 +68,7 @@ Response error_response(const Error& error, std::string_view job) {
   const auto* later = dynamic_cast<const RetryLater*>(&error);
   const int status = status_of(error.code(), later != nullptr);
   problem["status"] = status;
-  Response response =
-      json_response(status, problem.dump(-1, ' ', false, api::Json::error_handler_t::replace));
+  Response response = json_response(status, api::to_text(problem));
   response.content_type = "application/problem+json";
   response.problem = api::error_row(error.code()).name;
   if (error.code() == ErrorCode::unauthorized)

@@ -24,7 +24,7 @@ constexpr std::size_t kMostIdsInHint = 100;  // a hint has room for 8000 bytes
 
 }  // namespace
 
-EventExchange::EventExchange(store::PostgresAddress address, EventFeed& events,
+EventExchange::EventExchange(database::PostgresAddress address, EventFeed& events,
                              ExchangeCallbacks callbacks, const Log& log)
     : address_(std::move(address)),
       events_(events),
@@ -60,7 +60,7 @@ void EventExchange::keep_trying(const std::stop_token& stop) {
     std::string reason;
     try {
       exchange(stop);
-    } catch (const store::LinkLost& lost) {
+    } catch (const database::LinkLost& lost) {
       reason = lost.reason;
     } catch (const std::exception& error) {
       reason = reason_of(error);

@@ -34,7 +34,7 @@ struct ExchangeCallbacks {
 /// Thread-safe. The feeds and what the callbacks use must outlive it.
 class EventExchange {
  public:
-  EventExchange(store::PostgresAddress address, EventFeed& events, ExchangeCallbacks callbacks,
+  EventExchange(database::PostgresAddress address, EventFeed& events, ExchangeCallbacks callbacks,
                 const Log& log);
   ~EventExchange();
 
@@ -69,7 +69,7 @@ class EventExchange {
   void fetch(store::EventChannel& channel, const Feeds& feeds);
   void look_around(store::EventChannel& channel);
 
-  const store::PostgresAddress address_;
+  const database::PostgresAddress address_;
   EventFeed& events_;
   const ExchangeCallbacks callbacks_;
   const Log& log_;

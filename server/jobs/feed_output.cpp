@@ -20,7 +20,7 @@ bool is_news(const StageEvent& event, const StageEvent& told) {
 
 }  // namespace
 
-FeedOutput::FeedOutput(const RunningJob& job, store::BlobStore& blobs, ResultClaim room)
+FeedOutput::FeedOutput(const RunningJob& job, blobs::BlobStore& blobs, ResultClaim room)
     : job_(job), blobs_(blobs), room_(room) {
   const std::lock_guard lock(job_.output);
   if (!job_.has_ended) room_.reservation.give_up();
@@ -58,7 +58,7 @@ void FeedOutput::note(const Note& note) {
 }
 
 void FeedOutput::result(std::string_view format, std::string_view bytes) {
-  keep(store::result_file(format), bytes);
+  keep(blobs::result_file(format), bytes);
 }
 
 void FeedOutput::file(std::string_view name, std::string_view bytes) { keep(name, bytes); }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "server/blobs/blob_store.hpp"
 #include "server/jobs/job_queue.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/quota_reservations.hpp"
 #include "server/work/run_job.hpp"
 
@@ -25,7 +25,7 @@ struct ResultClaim {
 class FeedOutput final : public work::JobOutput {
  public:
   /// Gives up what an earlier attempt has reserved, as its files are replaced.
-  FeedOutput(const RunningJob& job, store::BlobStore& blobs, ResultClaim room);
+  FeedOutput(const RunningJob& job, blobs::BlobStore& blobs, ResultClaim room);
 
   /// Publishes an event when a stage or a chart begins, and for each half percent of progress:
   /// readers would get thousands of events otherwise.
@@ -40,7 +40,7 @@ class FeedOutput final : public work::JobOutput {
   [[nodiscard]] bool try_keep(std::string_view name, std::string_view bytes);
 
   const RunningJob& job_;
-  store::BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   const ResultClaim room_;
   std::optional<StageEvent> told_;  // last, as an event
 };

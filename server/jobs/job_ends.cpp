@@ -108,7 +108,7 @@ bool JobQueue::end_job(const store::JobRecord& job, store::JobOutcome outcome,
   record.state = outcome.state;
   record.problem = outcome.problem;
   record.finished_ms = outcome.finished_ms;
-  if (!job.webhook.empty()) outcome.delivery = store::text_of(api::to_json(store::to_job(record)));
+  if (!job.webhook.empty()) outcome.delivery = api::to_text(api::to_json(store::to_job(record)));
   const bool is_doubted = doubted_.contains(job.id);
   const bool is_ours = noting_doubt(job.id, [&] { return store_.finish(job, outcome); });
   if (!is_ours && !(is_doubted && has_ended(job, outcome.state))) {

@@ -31,7 +31,7 @@ void check_added(store::Insertion::Outcome outcome, const http::Quota& quota) {
 
 }  // namespace
 
-JobQueue::JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& events,
+JobQueue::JobQueue(store::JobStore& store, blobs::BlobStore& blobs, EventFeed& events,
                    const Log& log, const QueueConfig& config)
     : store_(store),
       blobs_(blobs),

@@ -29,6 +29,7 @@
 #include "core/base/error.hpp"
 #include "server/base/errors.hpp"
 #include "server/base/log.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/http/http.hpp"
 #include "server/jobs/admission.hpp"
 #include "server/jobs/affinity.hpp"
@@ -36,7 +37,6 @@
 #include "server/jobs/event_feed.hpp"
 #include "server/jobs/lease_watch.hpp"
 #include "server/jobs/work_sharing.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/job_store.hpp"
 
 namespace unwrapd::server::jobs {
@@ -100,7 +100,7 @@ struct Turn {
 /// Thread-safe.
 class JobQueue {
  public:
-  JobQueue(store::JobStore& store, store::BlobStore& blobs, EventFeed& events, const Log& log,
+  JobQueue(store::JobStore& store, blobs::BlobStore& blobs, EventFeed& events, const Log& log,
            const QueueConfig& config);
 
   /// Once, before any worker: what the last process left running waits again; a job whose row
@@ -245,7 +245,7 @@ class JobQueue {
                const std::function<void()>& stored = {});
 
   store::JobStore& store_;
-  store::BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   EventFeed& events_;
   const Log& log_;
   const QueueConfig config_;

@@ -96,7 +96,7 @@ void JobQueue::set_aside(const store::JobRecord& unreadable) {
   store::JobRecord ended = unreadable;
   ended.finished_ms = outcome.finished_ms;
   if (!unreadable.webhook.empty())
-    outcome.delivery = store::text_of(api::to_json(store::to_job(ended)));
+    outcome.delivery = api::to_text(api::to_json(store::to_job(ended)));
   store_.set_aside(unreadable, outcome);
   const bool has_files = blobs_.set_aside(unreadable.id, now.kept_ms());
   log_.error("job set aside: its row cannot be read", {{"job", unreadable.id},

@@ -19,7 +19,7 @@ std::optional<JobQueue::Answer> JobQueue::find_answer(store::JobRecord& job) {
 std::optional<JobQueue::Answer> JobQueue::adopt_answer(const std::string& id,
                                                        const store::JobRecord& same) {
   try {
-    const std::string report = blobs_.read(same.id, work::map_file(store::kReportFile, 0));
+    const std::string report = blobs_.read(same.id, work::map_file(blobs::kReportFile, 0));
     Answer answer{.format = same.result_format, .notes = api::notes_of_report(report)};
     if (blobs_.adopt(id, same.id)) return answer;
   } catch (const Error& error) {  // its report is gone or damaged: the job is run like any other

@@ -100,7 +100,7 @@ struct WorkerPool::Means {
   store::QuotaReservation& reservation;
 };
 
-WorkerPool::WorkerPool(JobQueue& queue, store::BlobStore& blobs, const api::Limits& limits,
+WorkerPool::WorkerPool(JobQueue& queue, blobs::BlobStore& blobs, const api::Limits& limits,
                        const Log& log, const WorkerConfig& config)
     : queue_(queue), blobs_(blobs), limits_(limits), log_(log), config_(config) {
   const std::lock_guard lock(mutex_);

@@ -21,8 +21,8 @@
 #include "core/base/executor.hpp"
 #include "core/base/shared_cache.hpp"
 #include "server/base/log.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/jobs/job_queue.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/quota_reservations.hpp"
 #include "server/store/stored_input.hpp"
 #include "server/work/job_process.hpp"
@@ -47,7 +47,7 @@ class WorkerPool {
  public:
   /// Starts at once; the destructor waits until the queue is closed and the running jobs have
   /// ended.
-  WorkerPool(JobQueue& queue, store::BlobStore& blobs, const api::Limits& limits, const Log& log,
+  WorkerPool(JobQueue& queue, blobs::BlobStore& blobs, const api::Limits& limits, const Log& log,
              const WorkerConfig& config);
   ~WorkerPool();
 
@@ -76,7 +76,7 @@ class WorkerPool {
   std::string run(const RunningJob& job, const Means& means);
 
   JobQueue& queue_;
-  store::BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   const api::Limits& limits_;
   const Log& log_;
   const WorkerConfig config_;

@@ -29,7 +29,7 @@ std::string view_name(const work::Picture& picture) {
 
 /// "uv.bin.layout.area.1024.png": every parameter is in it.
 std::string file_name(std::size_t map, const work::Picture& picture) {
-  const std::string uv_file = work::map_file(store::kUvFile, map);
+  const std::string uv_file = work::map_file(blobs::kUvFile, map);
   const std::string size = picture.has_page_size ? "texels" : std::to_string(picture.size);
   switch (picture.kind) {
     case work::PictureKind::layout_svg:

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "server/blobs/blob_store.hpp"
 #include "server/results/renderer.hpp"
 #include "server/results/result_store.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 
 namespace unwrapd::server::results {
@@ -13,7 +13,7 @@ namespace unwrapd::server::results {
 /// Thread-safe.
 class PictureStore {
  public:
-  PictureStore(store::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
+  PictureStore(blobs::BlobStore& blobs, Renderer& renderer) : blobs_(blobs), renderer_(renderer) {}
 
   /// The picture of one of the maps of a succeeded job (lambda_selection.hpp). Only usual looks in
   /// sizes that are a power of two are stored with the job, so that requests for all others do not
@@ -24,7 +24,7 @@ class PictureStore {
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  store::BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   Renderer& renderer_;
   FileCounts counts_;
 };

@@ -24,7 +24,7 @@ constexpr std::uintmax_t kBytesAByte = 8;
 std::shared_ptr<void> Renderer::enter(const store::JobRecord& job, const WantedFile& wanted) {
   std::error_code gone;  // then rendering reports it
   const std::uintmax_t uvs = std::filesystem::file_size(
-      blobs_.path(job.id, work::map_file(store::kUvFile, wanted.map)), gone);
+      blobs_.path(job.id, work::map_file(blobs::kUvFile, wanted.map)), gone);
   const auto kept = static_cast<std::uintmax_t>(job.input.bytes) + (gone ? 0 : uvs);
   return room_.enter({.file = job.id + "/" + wanted.file,
                       .holder = job.owner.empty() ? job.id : job.owner,
@@ -35,7 +35,7 @@ std::shared_ptr<void> Renderer::enter(const store::JobRecord& job, const WantedF
 
 std::string Renderer::render(const store::JobRecord& job, const work::Rendering& rendering,
                              const http::HasLeft& has_left) const {
-  const std::string uv_file = work::map_file(store::kUvFile, rendering.map);
+  const std::string uv_file = work::map_file(blobs::kUvFile, rendering.map);
   if (blobs_.holds(job.id) && !blobs_.has(job.id, uv_file) &&
       !std::filesystem::exists(blobs_.path(job.id, uv_file))) {
     throw Error(ErrorCode::result_expired,
@@ -47,7 +47,7 @@ std::string Renderer::render(const store::JobRecord& job, const work::Rendering&
   std::string report;
   const bool shows_page = rendering.picture && rendering.picture->page > 0;
   if (shows_page || (!rendering.picture && !rendering.format))
-    report = blobs_.read(job.id, work::map_file(store::kReportFile, rendering.map));
+    report = blobs_.read(job.id, work::map_file(blobs::kReportFile, rendering.map));
   return make(rendering,
               {.record = loaded.record(), .asset = loaded.input(), .uvs = uvs, .report = report},
               has_left);

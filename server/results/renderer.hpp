@@ -7,8 +7,8 @@
 
 #include "api/limits.hpp"
 #include "server/base/log.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/results/render_limiter.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 #include "server/work/job_process.hpp"
 #include "server/work/job_worker.hpp"
@@ -27,7 +27,7 @@ struct WantedFile {
 /// Thread-safe.
 class Renderer {
  public:
-  Renderer(const store::BlobStore& blobs, const api::Limits& limits, const Log& log,
+  Renderer(const blobs::BlobStore& blobs, const api::Limits& limits, const Log& log,
            const work::Isolation& isolation, const RenderLimits& making,
            const work::WorkerFunctions& functions = {})
       : blobs_(blobs),
@@ -60,7 +60,7 @@ class Renderer {
   [[nodiscard]] std::string make_here(const work::Rendering& rendering,
                                       const work::RenderingInput& input) const;
 
-  const store::BlobStore& blobs_;
+  const blobs::BlobStore& blobs_;
   const api::Limits& limits_;
   const Log& log_;
   const work::Isolation isolation_;

@@ -17,7 +17,7 @@ std::optional<asset::Format> format_named(std::string_view name) {
 
 }  // namespace
 
-std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std::string& job,
+std::optional<StoredResult> find_whole(const blobs::BlobStore& blobs, const std::string& job,
                                        const std::string& file) {
   if (!std::filesystem::exists(blobs.path(job, file))) return std::nullopt;
   try {
@@ -28,19 +28,19 @@ std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std:
   }
 }
 
-StoredResult keep(store::BlobStore& blobs, const store::JobRecord& job, const std::string& file,
+StoredResult keep(blobs::BlobStore& blobs, const store::JobRecord& job, const std::string& file,
                   std::string_view bytes) {
   if (!blobs.try_keep(job.id, file, bytes, job.seq)) return lend(blobs, bytes);
   return {.file = blobs.open(job.id, file), .sha256 = blobs.digest(job.id, file)};
 }
 
-StoredResult lend(const store::BlobStore& blobs, std::string_view bytes) {
+StoredResult lend(const blobs::BlobStore& blobs, std::string_view bytes) {
   return {.file = blobs.lend(bytes), .sha256 = sha256(bytes)};
 }
 
 StoredResult ResultStore::open(const store::JobRecord& job, std::size_t map,
                                std::string_view format, const http::HasLeft& has_left) {
-  const std::string file = work::map_file(store::result_file(format), map);
+  const std::string file = work::map_file(blobs::result_file(format), map);
   std::optional<StoredResult> kept = find_whole(blobs_, job.id, file);
   std::shared_ptr<void> place;
   if (!kept) {
@@ -57,11 +57,11 @@ StoredResult ResultStore::open(const store::JobRecord& job, std::size_t map,
   return keep(blobs_, job, file, bytes);
 }
 
-std::optional<store::ResultLink> ResultStore::link(const store::JobRecord& job, std::size_t map,
+std::optional<blobs::ResultLink> ResultStore::link(const store::JobRecord& job, std::size_t map,
                                                    std::string_view format,
                                                    std::string_view method) {
   if (from_ == ResultsFrom::node) return std::nullopt;
-  const std::string file = work::map_file(store::result_file(format), map);
+  const std::string file = work::map_file(blobs::result_file(format), map);
   return blobs_.link(job.id, job.seq, file, method, http::media_type(format));
 }
 

@@ -10,8 +10,8 @@
 #include "core/asset/asset.hpp"
 #include "server/base/files.hpp"
 #include "server/base/metrics.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/results/renderer.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 
 namespace unwrapd::server::results {
@@ -22,14 +22,14 @@ struct StoredResult {
 };
 
 /// A file of a job that exists and matches its digest.
-std::optional<StoredResult> find_whole(const store::BlobStore& blobs, const std::string& job,
+std::optional<StoredResult> find_whole(const blobs::BlobStore& blobs, const std::string& job,
                                        const std::string& file);
 /// A file that was made after the end of its job, kept where that takes nothing from others and no
 /// other job has taken its id meanwhile.
-StoredResult keep(store::BlobStore& blobs, const store::JobRecord& job, const std::string& file,
+StoredResult keep(blobs::BlobStore& blobs, const store::JobRecord& job, const std::string& file,
                   std::string_view bytes);
 /// One that is handed out once.
-StoredResult lend(const store::BlobStore& blobs, std::string_view bytes);
+StoredResult lend(const blobs::BlobStore& blobs, std::string_view bytes);
 
 /// Who hands out results that are in a bucket.
 enum class ResultsFrom { node, bucket };
@@ -37,7 +37,7 @@ enum class ResultsFrom { node, bucket };
 /// Thread-safe.
 class ResultStore {
  public:
-  ResultStore(store::BlobStore& blobs, Renderer& renderer, ResultsFrom from = ResultsFrom::node)
+  ResultStore(blobs::BlobStore& blobs, Renderer& renderer, ResultsFrom from = ResultsFrom::node)
       : blobs_(blobs), renderer_(renderer), from_(from) {}
 
   /// The result of a succeeded job by one of its maps (see lambda_selection.hpp), in a format (glb,
@@ -47,12 +47,12 @@ class ResultStore {
                     const http::HasLeft& has_left = {});
   /// The same result, where the bucket hands it out: for a client that asks by this method (GET or
   /// HEAD). Nothing where the bucket has none of this map and format.
-  std::optional<store::ResultLink> link(const store::JobRecord& job, std::size_t map,
+  std::optional<blobs::ResultLink> link(const store::JobRecord& job, std::size_t map,
                                         std::string_view format, std::string_view method);
   [[nodiscard]] const FileCounts& counts() const { return counts_; }
 
  private:
-  store::BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   Renderer& renderer_;
   const ResultsFrom from_;
   FileCounts counts_;

@@ -97,7 +97,7 @@ http::Response sync_response(const JobServices& services, const store::JobRecord
                              const http::Request& request, GetResult result_of) {
   require_result(job);
   http::Response response = result_of(services.results, job, 0, request);
-  response.headers.emplace_back("Unwrapd-Report", services.blobs.read(job.id, store::kTotalsFile));
+  response.headers.emplace_back("Unwrapd-Report", services.blobs.read(job.id, blobs::kTotalsFile));
   return response;
 }
 
@@ -151,7 +151,7 @@ void add_files(std::vector<http::Route>& routes, const JobServices& services) {
   add_result("/v1/jobs/{id}/result.json", &get_json_result);
   add("/v1/jobs/{id}/report",
       [services](const store::JobRecord& job, std::size_t map, const http::Request&) {
-        return get_file(services.blobs, job, work::map_file(store::kReportFile, map),
+        return get_file(services.blobs, job, work::map_file(blobs::kReportFile, map),
                         "application/json");
       });
 }

@@ -19,7 +19,7 @@ namespace unwrapd::server::routes {
 struct JobServices {
   store::JobStore& store;
   jobs::JobQueue& queue;
-  store::BlobStore& blobs;
+  blobs::BlobStore& blobs;
   jobs::EventFeed& events;
   EventStreams& streams;
   uploads::Submissions& submissions;

@@ -33,7 +33,7 @@ http::Response result_in(const std::string& format, results::ResultStore& result
                          request);
 }
 
-http::Response linked_response(const store::ResultLink& linked, std::string_view type,
+http::Response linked_response(const blobs::ResultLink& linked, std::string_view type,
                                const http::Request& request) {
   const std::string etag = "\"" + linked.sha256 + "\"";
   if (has_copy(request, etag)) return not_modified(request, etag, type);
@@ -117,7 +117,7 @@ http::Response get_json_result(results::ResultStore& results, const store::JobRe
   return result_in("json", results, job, map, request);
 }
 
-http::Response get_file(const store::BlobStore& blobs, const store::JobRecord& job,
+http::Response get_file(const blobs::BlobStore& blobs, const store::JobRecord& job,
                         std::string_view file, std::string_view type) {
   require_result(job);
   const std::shared_ptr<const File> opened = blobs.open(job.id, file);

@@ -1,9 +1,9 @@
 #pragma once
 // The answers that a finished job has: the asset and the report.
 
+#include "server/blobs/blob_store.hpp"
 #include "server/http/http.hpp"
 #include "server/results/result_store.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/job_record.hpp"
 
 namespace unwrapd::server::routes {
@@ -38,7 +38,7 @@ http::Response get_json_result(results::ResultStore& results, const store::JobRe
                                std::size_t map, const http::Request& request);
 
 /// A file of the job as it is.
-http::Response get_file(const store::BlobStore& blobs, const store::JobRecord& job,
+http::Response get_file(const blobs::BlobStore& blobs, const store::JobRecord& job,
                         std::string_view file, std::string_view type);
 
 }  // namespace unwrapd::server::routes

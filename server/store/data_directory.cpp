@@ -8,8 +8,8 @@
 
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
-#include "server/store/schema.hpp"
-#include "server/store/sqlite_database.hpp"
+#include "server/database/schema.hpp"
+#include "server/database/sqlite_database.hpp"
 
 namespace unwrapd::server::store {
 namespace {
@@ -27,19 +27,21 @@ constexpr std::size_t kNodeBytes = 8;
 bool has_tables_in(const std::filesystem::path& file) {
   std::error_code none;
   const bool is_empty = std::filesystem::file_size(file, none) == 0 || none;
-  return !is_empty && has_tables(SqliteDatabase(file, SqliteDatabase::Access::read));
+  return !is_empty && database::has_tables(
+                          database::SqliteDatabase(file, database::SqliteDatabase::Access::read));
 }
 
 /// Whether it lists a job or a mesh, or did so once. Tables alone say nothing: keys are there
 /// before the first start.
-bool has_had_rows(const Database& database) {
-  if (!has_tables(database)) return false;
-  return number_of(database,
-                   "SELECT (SELECT COUNT(*) FROM pg_sequences WHERE schemaname = current_schema()"
-                   " AND sequencename IN ('jobs_seq_seq', 'meshes_seq_seq')"
-                   " AND last_value IS NOT NULL)"
-                   " + (SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1) AS job)"
-                   " + (SELECT COUNT(*) FROM (SELECT 1 FROM meshes LIMIT 1) AS mesh)") > 0;
+bool has_had_rows(const database::Database& database) {
+  if (!database::has_tables(database)) return false;
+  return database::number_of(
+             database,
+             "SELECT (SELECT COUNT(*) FROM pg_sequences WHERE schemaname = current_schema()"
+             " AND sequencename IN ('jobs_seq_seq', 'meshes_seq_seq')"
+             " AND last_value IS NOT NULL)"
+             " + (SELECT COUNT(*) FROM (SELECT 1 FROM jobs LIMIT 1) AS job)"
+             " + (SELECT COUNT(*) FROM (SELECT 1 FROM meshes LIMIT 1) AS mesh)") > 0;
 }
 
 int open_lock(const std::filesystem::path& data) {
@@ -61,14 +63,16 @@ DataLock::DataLock(const std::filesystem::path& data) : file_(open_lock(data)) {
                   " cannot be locked; stop any other unwrapd that uses it.");
 }
 
-DatabaseAddress address_in(const std::filesystem::path& data, const PostgresAddress& database) {
+database::DatabaseAddress address_in(const std::filesystem::path& data,
+                                     const database::PostgresAddress& database) {
   if (database.url.empty()) return data / kStoreFile;
   return database;
 }
 
-DatabaseAddress store_in(const std::filesystem::path& data, const PostgresAddress& database,
-                         const BlobStore& blobs) {
-  DatabaseAddress address = address_in(data, database);
+database::DatabaseAddress store_in(const std::filesystem::path& data,
+                                   const database::PostgresAddress& database,
+                                   const blobs::BlobStore& blobs) {
+  database::DatabaseAddress address = address_in(data, database);
   const int folders = blobs.folder_count();
   if (folders == 0) return address;
   const bool in_file = database.url.empty();
@@ -95,7 +99,7 @@ std::string node_in(const std::filesystem::path& data) {
 }
 
 bool is_whole(const std::filesystem::path& data, const std::filesystem::path& blobs,
-              const PostgresAddress& database) {
+              const database::PostgresAddress& database) {
   return std::filesystem::is_directory(blobs / "blobs") &&
          (!database.url.empty() || std::filesystem::exists(data / kStoreFile));
 }

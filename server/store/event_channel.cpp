@@ -36,12 +36,12 @@ constexpr const char* kForget =
 std::string positions(const std::vector<EventChannel::JobAndSeq>& jobs) {
   api::Json all = api::Json::array();
   for (const auto& [job, seq] : jobs) all.push_back({{"job", job}, {"seq", seq}});
-  return text_of(all);
+  return api::to_text(all);
 }
 
 }  // namespace
 
-EventChannel::EventChannel(const PostgresAddress& address) : link_(address.url) {
+EventChannel::EventChannel(const database::PostgresAddress& address) : link_(address.url) {
   link_.run(kEventSession);
   channel_ = link_.run("SELECT 'unwrapd_' || md5(current_schema())").text(0, 0);
 }
@@ -54,35 +54,37 @@ void EventChannel::append(const std::vector<EventRow>& events) {
                    {"last", int{event.is_last}},
                    {"frame", event.frame},
                    {"progress", event.progress}});
-  link_.run(kAppend, {{.text = text_of(all), .type = kTextType}});
+  link_.run(kAppend, {{.text = api::to_text(all), .type = database::kTextType}});
 }
 
 std::vector<EventRow> EventChannel::after(const std::vector<JobAndSeq>& jobs) {
-  const PostgresResult rows = link_.run(kAfter, {{.text = positions(jobs), .type = kTextType}});
+  const database::PostgresResult rows =
+      link_.run(kAfter, {{.text = positions(jobs), .type = database::kTextType}});
   std::vector<EventRow> events;
   for (int row = 0; row < rows.rows(); ++row)
     events.push_back({.job = rows.text(row, 0),
-                      .seq = number_in(rows.text(row, 1)),
-                      .is_last = number_in(rows.text(row, 2)) != 0,
+                      .seq = database::number_in(rows.text(row, 1)),
+                      .is_last = database::number_in(rows.text(row, 2)) != 0,
                       .frame = rows.text(row, 3),
                       .progress = rows.text(row, 4)});
   return events;
 }
 
 std::vector<std::string> EventChannel::ended(const std::vector<JobAndSeq>& jobs) {
-  const PostgresResult rows = link_.run(kEnded, {{.text = positions(jobs), .type = kTextType}});
+  const database::PostgresResult rows =
+      link_.run(kEnded, {{.text = positions(jobs), .type = database::kTextType}});
   std::vector<std::string> ids;
   for (int row = 0; row < rows.rows(); ++row) ids.push_back(rows.text(row, 0));
   return ids;
 }
 
 void EventChannel::forget_before(std::int64_t finished_ms) {
-  link_.run(kForget, {{.text = std::to_string(finished_ms), .type = kNumberType}});
+  link_.run(kForget, {{.text = std::to_string(finished_ms), .type = database::kNumberType}});
 }
 
 void EventChannel::hint(std::string_view text) {
-  link_.run("SELECT pg_notify(?, ?)", {{.text = channel_, .type = kTextType},
-                                       {.text = std::string(text), .type = kTextType}});
+  link_.run("SELECT pg_notify(?, ?)", {{.text = channel_, .type = database::kTextType},
+                                       {.text = std::string(text), .type = database::kTextType}});
 }
 
 void EventChannel::listen() { link_.run("LISTEN " + channel_); }

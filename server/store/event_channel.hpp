@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "server/base/wakeup.hpp"
-#include "server/store/postgres_address.hpp"
-#include "server/store/postgres_link.hpp"
+#include "server/database/postgres_address.hpp"
+#include "server/database/postgres_link.hpp"
 
 namespace unwrapd::server::store {
 
@@ -33,7 +33,7 @@ class EventChannel {
  public:
   using JobAndSeq = std::pair<std::string, std::int64_t>;
 
-  explicit EventChannel(const PostgresAddress& address);
+  explicit EventChannel(const database::PostgresAddress& address);
 
   /// Events of one job must come in their order. A number that is there already stays as it is.
   void append(const std::vector<EventRow>& events);
@@ -51,7 +51,7 @@ class EventChannel {
   std::vector<std::string> wait(std::chrono::milliseconds time, const Wakeup& bell);
 
  private:
-  PostgresLink link_;
+  database::PostgresLink link_;
   std::string channel_;
 };
 

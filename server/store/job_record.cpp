@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "server/base/clock.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 
 namespace unwrapd::server::store {
 
@@ -23,12 +23,12 @@ api::Job to_job(const JobRecord& record) {
   return job;
 }
 
-Digests digests_of(const JobInput& input) {
-  Digests digests;
+blobs::Digests digests_of(const JobInput& input) {
+  blobs::Digests digests;
   const auto add = [&](std::string_view file, const std::string& sha256) {
     if (!sha256.empty()) digests.emplace(file, sha256);
   };
-  add(kDocumentFile, input.sha256);
+  add(blobs::kDocumentFile, input.sha256);
   for (const StoredBuffer& buffer : input.buffers) add(buffer.file, buffer.sha256);
   return digests;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/job.hpp"
-#include "server/store/digests.hpp"
+#include "server/blobs/digests.hpp"
 
 namespace unwrapd::server::store {
 
@@ -28,7 +28,7 @@ struct JobInput {
 };
 
 /// Of an upload that has just come: all its files but long options.
-Digests digests_of(const JobInput& input);
+blobs::Digests digests_of(const JobInput& input);
 
 // NOLINTNEXTLINE(bugprone-exception-escape): moving a JSON value moves a pointer, and cannot throw
 struct JobRecord {

@@ -34,7 +34,7 @@ std::vector<StoredBuffer> buffers_of(const api::Json& json) {
 /// Reads the columns of a row in order.
 class Columns {
  public:
-  explicit Columns(const Statement& row) : row_(row) {}
+  explicit Columns(const database::Statement& row) : row_(row) {}
   std::int64_t number() { return row_.number(column_++); }
   /// Call is_whole() afterwards: it is false if a number did not fit.
   int integer() {
@@ -47,7 +47,7 @@ class Columns {
   [[nodiscard]] bool is_whole() const { return is_whole_; }
 
  private:
-  const Statement& row_;
+  const database::Statement& row_;
   int column_ = 0;
   bool is_whole_ = true;
 };
@@ -110,7 +110,7 @@ void read_whole(Columns& next, const std::string& state, JobRecord& job) {
 }
 
 /// Reads an unreadable row as that of a failed job, so that it does not stop the reading of others.
-JobRecord record_of(const Statement& row) {
+JobRecord record_of(const database::Statement& row) {
   Columns next(row);
   JobRecord job;
   const std::string state = read_plain(next, job);
@@ -135,14 +135,10 @@ std::string select_jobs(std::string_view rest) {
 
 std::string returning_jobs() { return " RETURNING" + std::string(kColumns); }
 
-std::vector<JobRecord> job_rows(Statement& statement) {
+std::vector<JobRecord> job_rows(database::Statement& statement) {
   std::vector<JobRecord> found;
   while (statement.step()) found.push_back(record_of(statement));
   return found;
-}
-
-std::string text_of(const api::Json& json) {
-  return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
 }
 
 api::Json buffers_json(const std::vector<StoredBuffer>& buffers) {

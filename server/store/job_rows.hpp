@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/store/database.hpp"
+#include "server/database/database.hpp"
 #include "server/store/job_record.hpp"
 
 namespace unwrapd::server::store {
@@ -17,10 +17,7 @@ std::string select_jobs(std::string_view rest);
 std::string returning_jobs();
 
 /// All rows of a statement with these columns; of one that cannot be read `unreadable` says why.
-std::vector<JobRecord> job_rows(Statement& statement);
-
-/// JSON as text; what is not UTF-8 in it is replaced.
-std::string text_of(const api::Json& json);
+std::vector<JobRecord> job_rows(database::Statement& statement);
 
 api::Json buffers_json(const std::vector<StoredBuffer>& buffers);
 

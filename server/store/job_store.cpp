@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "api/error_table.hpp"
+#include "server/database/schema.hpp"
 #include "server/store/job_rows.hpp"
-#include "server/store/schema.hpp"
 
 namespace unwrapd::server::store {
 namespace {
@@ -51,12 +51,13 @@ JobOutcome ended(JobState state, const Error& why, std::string_view job) {
   return outcome;
 }
 
-JobStore::JobStore(const DatabaseAddress& address, RetentionClock::Read read, Node node)
+JobStore::JobStore(const database::DatabaseAddress& address, RetentionClock::Read read, Node node)
     : node_(std::move(node)), database_(address.open()) {
   database_->claim();
   database_->check(false);
-  migrate(*database_);
-  Statement noted(*database_, "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
+  database::migrate(*database_);
+  database::Statement noted(*database_,
+                            "SELECT set_by_ms, noted_ms, noted_elapsed_ms, boot FROM written");
   if (noted.step() && !node_.is_shared)
     noted_ = {.times = {noted.number(1), noted.number(2), noted.text(3)},
               .set_by_ms = noted.number(0)};
@@ -107,7 +108,7 @@ std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&...
   std::vector<JobRecord> found;
   {
     const std::lock_guard lock(mutex_);
-    Statement statement(*database_, select_jobs(rest));
+    database::Statement statement(*database_, select_jobs(rest));
     found = job_rows(statement.with(values...));
   }
   if (found.empty()) return std::nullopt;
@@ -117,12 +118,12 @@ std::optional<JobRecord> JobStore::first(std::string_view rest, const Values&...
 }
 
 std::int64_t JobStore::insert_row(const JobRecord& job) {
-  Statement statement(*database_, insert_statement());
-  statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, text_of(job.options),
-                 text_of(job.notes), job.input.sha256, job.input.bytes,
-                 text_of(buffers_json(job.input.buffers)), job.owner, std::int64_t{job.urgency},
-                 job.request_key, job.content_key, job.stored_bytes, job.webhook, job.trace,
-                 job.asked, job.name);
+  database::Statement statement(*database_, insert_statement());
+  statement.with(job.id, job.created_ms, std::int64_t{job.synchronous}, api::to_text(job.options),
+                 api::to_text(job.notes), job.input.sha256, job.input.bytes,
+                 api::to_text(buffers_json(job.input.buffers)), job.owner,
+                 std::int64_t{job.urgency}, job.request_key, job.content_key, job.stored_bytes,
+                 job.webhook, job.trace, job.asked, job.name);
   if (!statement.step()) return 0;
   const std::int64_t seq = statement.number(0);
   statement.run();
@@ -131,11 +132,12 @@ std::int64_t JobStore::insert_row(const JobRecord& job) {
 
 /// False when it was spent before.
 bool JobStore::spend(const SpentTicket& ticket, std::int64_t now_ms) {
-  Statement(*database_, "DELETE FROM spent_tickets WHERE until_ms < ?")
+  database::Statement(*database_, "DELETE FROM spent_tickets WHERE until_ms < ?")
       .with(now_ms - kSpentKeptMs)
       .run();
-  Statement(*database_,
-            "INSERT INTO spent_tickets (id, until_ms) VALUES (?, ?) ON CONFLICT (id) DO NOTHING")
+  database::Statement(
+      *database_,
+      "INSERT INTO spent_tickets (id, until_ms) VALUES (?, ?) ON CONFLICT (id) DO NOTHING")
       .with(ticket.id, ticket.until_ms)
       .run();
   return database_->changes() > 0;
@@ -144,10 +146,10 @@ bool JobStore::spend(const SpentTicket& ticket, std::int64_t now_ms) {
 /// Once the job is inserted: the rows of its owner are locked from then on.
 void JobStore::check_limits(const JobRecord& job, const OwnerLimits& limits) {
   if (limits.live_jobs == 0 && limits.stored_bytes == 0) return;
-  Statement now(*database_,
-                "SELECT (SELECT waiting + running FROM shares WHERE owner = ?1), bytes"
-                " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes WHERE owner = ?1)"
-                " FROM stored WHERE owner = ?1");
+  database::Statement now(*database_,
+                          "SELECT (SELECT waiting + running FROM shares WHERE owner = ?1), bytes"
+                          " + (SELECT COALESCE(SUM(stored_bytes), 0) FROM meshes WHERE owner = ?1)"
+                          " FROM stored WHERE owner = ?1");
   if (!now.with(job.owner).step()) return;
   if (limits.live_jobs > 0 && now.number(0) > limits.live_jobs)
     throw Refused{Insertion::Outcome::too_many_jobs};
@@ -172,7 +174,9 @@ Insertion JobStore::insert(const JobRecord& job, const OwnerLimits& limits,
 
 bool JobStore::is_spent(std::string_view ticket) {
   const std::lock_guard lock(mutex_);
-  return Statement(*database_, "SELECT id FROM spent_tickets WHERE id = ?").with(ticket).step();
+  return database::Statement(*database_, "SELECT id FROM spent_tickets WHERE id = ?")
+      .with(ticket)
+      .step();
 }
 
 std::optional<JobRecord> JobStore::find(std::string_view id) { return first("WHERE id = ?", id); }
@@ -191,7 +195,7 @@ std::optional<JobRecord> JobStore::find_same(std::string_view owner, std::string
 
 std::vector<JobRecord> JobStore::unfinished() {
   const std::lock_guard lock(mutex_);
-  Statement statement(
+  database::Statement statement(
       *database_,
       select_jobs("WHERE seq IN (SELECT seq FROM jobs" +
                   database_->dialect().by_index("jobs_in_state") +
@@ -201,7 +205,7 @@ std::vector<JobRecord> JobStore::unfinished() {
 
 std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
   const std::lock_guard lock(mutex_);
-  Statement statement(*database_, list_statement(filter));
+  database::Statement statement(*database_, list_statement(filter));
   const std::string state(filter.state ? state_name(*filter.state) : "");
   const std::int64_t before = filter.before_seq > 0 ? filter.before_seq : kAnySeq;
   return job_rows(statement.with(filter.owner.value_or(""), state, filter.name.value_or(""), before,
@@ -211,14 +215,14 @@ std::vector<JobRecord> JobStore::list(const JobFilter& filter) {
 bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
   const std::int64_t kept_since_ms = outcome.finished_ms - outcome.set_by_ms;
   return transact([&] {
-    Statement statement(
+    database::Statement statement(
         *database_,
         "UPDATE jobs SET state = ?4, result_format = ?5, problem = ?6,"
         " last_event = ?7, finished_ms = ?8, kept_since_ms = ?10, stored_bytes = ?9,"
         " ran_ms = ran_ms + ?11 WHERE seq = ?1 AND attempt = ?2 AND state = ?3");
     statement
         .with(known.seq, std::int64_t{known.attempt}, state_name(known.state),
-              state_name(outcome.state), outcome.result_format, text_of(outcome.problem),
+              state_name(outcome.state), outcome.result_format, api::to_text(outcome.problem),
               outcome.last_event, outcome.finished_ms, outcome.stored_bytes, kept_since_ms,
               outcome.ran_ms)
         .run();
@@ -230,9 +234,9 @@ bool JobStore::finish(const JobRecord& known, const JobOutcome& outcome) {
 
 void JobStore::queue_delivery(const JobRecord& job, const JobOutcome& outcome) {
   if (job.webhook.empty()) return;
-  Statement(*database_,
-            "INSERT INTO deliveries (job, owner, trace, url, body, due_ms)"
-            " VALUES (?, ?, ?, ?, ?, ?)")
+  database::Statement(*database_,
+                      "INSERT INTO deliveries (job, owner, trace, url, body, due_ms)"
+                      " VALUES (?, ?, ?, ?, ?, ?)")
       .with(job.id, job.owner, job.trace, job.webhook, outcome.delivery,
             outcome.finished_ms - outcome.set_by_ms)
       .run();
@@ -240,12 +244,13 @@ void JobStore::queue_delivery(const JobRecord& job, const JobOutcome& outcome) {
 
 void JobStore::set_aside(const JobRecord& unreadable, const JobOutcome& outcome) {
   transact([&] {
-    Statement(*database_,
-              "UPDATE jobs SET state = ?2, problem = ?3, finished_ms = ?4, kept_since_ms = ?5,"
-              " options = '{}', notes = '[]', buffers = '[]', attempt = ?6, crashes = 0, "
-              "process_ends = 0, urgency = ?7,"
-              " stored_bytes = 0 WHERE seq = ?1")
-        .with(unreadable.seq, state_name(outcome.state), text_of(outcome.problem),
+    database::Statement(
+        *database_,
+        "UPDATE jobs SET state = ?2, problem = ?3, finished_ms = ?4, kept_since_ms = ?5,"
+        " options = '{}', notes = '[]', buffers = '[]', attempt = ?6, crashes = 0, "
+        "process_ends = 0, urgency = ?7,"
+        " stored_bytes = 0 WHERE seq = ?1")
+        .with(unreadable.seq, state_name(outcome.state), api::to_text(outcome.problem),
               outcome.finished_ms, outcome.finished_ms - outcome.set_by_ms,
               std::int64_t{std::max(0, unreadable.attempt)}, std::int64_t{kUsualUrgency})
         .run();

@@ -25,8 +25,8 @@
 
 #include "core/base/error.hpp"
 #include "server/base/retention_clock.hpp"
-#include "server/store/blob_store.hpp"
-#include "server/store/database_address.hpp"
+#include "server/blobs/blob_store.hpp"
+#include "server/database/database_address.hpp"
 #include "server/store/job_record.hpp"
 #include "server/store/stage_of_job.hpp"
 
@@ -117,8 +117,8 @@ struct WaitingJob {
 class JobStore {
  public:
   /// Throws when it cannot be written. read: the clocks.
-  explicit JobStore(const DatabaseAddress& address, RetentionClock::Read read = read_clocks,
-                    Node node = {});
+  explicit JobStore(const database::DatabaseAddress& address,
+                    RetentionClock::Read read = read_clocks, Node node = {});
 
   /// Called with each job that is found or taken from now on. Where another node has ended it, its
   /// results may not be in their place yet.
@@ -230,7 +230,7 @@ class JobStore {
 
   /// The files of a job are kept while it is not final, or has succeeded and not expired. Their
   /// fate is `unknown` when the job has no row, or one that cannot be read.
-  FolderFate fate_of(std::string_view id);
+  blobs::FolderFate fate_of(std::string_view id);
   /// Final jobs that ended before this time (of Moment::kept_ms(), like all below) and still have
   /// their files, the oldest first.
   std::vector<std::string> finished_before(std::int64_t epoch_ms,
@@ -267,7 +267,7 @@ class JobStore {
   /// A change by one statement whose rows nobody asks for.
   template <class... Values>
   void update(std::string_view sql, const Values&... values) {
-    change([&] { Statement(*database_, sql).with(values...).run(); });
+    change([&] { database::Statement(*database_, sql).with(values...).run(); });
   }
   /// Database::change() and transact() of this store, which remembers whether that came about.
   template <class Make>
@@ -291,7 +291,7 @@ class JobStore {
   const Node node_;
   std::function<void(const JobRecord& job)> on_found_;
   std::mutex mutex_;
-  const std::shared_ptr<Database> database_;
+  const std::shared_ptr<database::Database> database_;
   NotedTime noted_;
   std::optional<const RetentionClock> time_;
   std::atomic<bool> write_failed_ = true;  // or was not tried

@@ -13,11 +13,11 @@ namespace unwrapd::server::store {
 /// A later attempt of the job begins its stages anew, and finds the bundles of the one before.
 bool JobStore::open_stage(const StageOfJob& of, int bundles) {
   return change([&] {
-    Statement(*database_,
-              "INSERT INTO shared_stages (job, stage, program, attempt, bundles)"
-              " VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (job, stage) DO UPDATE"
-              " SET attempt = excluded.attempt, from_front = 0, from_back = 0"
-              " WHERE shared_stages.attempt < excluded.attempt")
+    database::Statement(*database_,
+                        "INSERT INTO shared_stages (job, stage, program, attempt, bundles)"
+                        " VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT (job, stage) DO UPDATE"
+                        " SET attempt = excluded.attempt, from_front = 0, from_back = 0"
+                        " WHERE shared_stages.attempt < excluded.attempt")
         .with(of.job, of.stage, UNWRAPD_VERSION, std::int64_t{of.attempt}, std::int64_t{bundles})
         .run();
     return database_->changes() == 1;
@@ -27,10 +27,11 @@ bool JobStore::open_stage(const StageOfJob& of, int bundles) {
 std::optional<int> JobStore::claim_bundle(const StageOfJob& of, bool is_helper) {
   const std::string end = is_helper ? "from_back" : "from_front";
   return change([&]() -> std::optional<int> {
-    Statement claim(*database_, "UPDATE shared_stages SET " + end + " = " + end +
-                                    " + 1 WHERE job = ?1 AND stage = ?2 AND attempt = ?3"
-                                    " AND from_front + from_back < bundles RETURNING " +
-                                    (is_helper ? "bundles - from_back" : "from_front - 1"));
+    database::Statement claim(*database_,
+                              "UPDATE shared_stages SET " + end + " = " + end +
+                                  " + 1 WHERE job = ?1 AND stage = ?2 AND attempt = ?3"
+                                  " AND from_front + from_back < bundles RETURNING " +
+                                  (is_helper ? "bundles - from_back" : "from_front - 1"));
     claim.with(of.job, of.stage, std::int64_t{of.attempt});
     if (!claim.step()) return std::nullopt;
     return static_cast<int>(claim.number(0));
@@ -50,23 +51,23 @@ void JobStore::keep_bundle(const StageOfJob& of, int bundle, std::string_view by
 
 std::optional<std::string> JobStore::bundle(const StageOfJob& of, int bundle) {
   const std::lock_guard lock(mutex_);
-  Statement row(*database_,
-                "SELECT bytes FROM shared_bundles WHERE job = ?1 AND stage = ?2 AND bundle = ?3");
+  database::Statement row(
+      *database_, "SELECT bytes FROM shared_bundles WHERE job = ?1 AND stage = ?2 AND bundle = ?3");
   if (!row.with(of.job, of.stage, std::int64_t{bundle}).step()) return std::nullopt;
   return asset::base64_decoded(row.text(0));
 }
 
 bool JobStore::is_running(std::int64_t job, int attempt) {
   const std::lock_guard lock(mutex_);
-  Statement row(*database_,
-                "SELECT 1 FROM jobs WHERE seq = ?1 AND attempt = ?2 AND state = 'running'"
-                " AND cancel_requested = 0");
+  database::Statement row(*database_,
+                          "SELECT 1 FROM jobs WHERE seq = ?1 AND attempt = ?2 AND state = 'running'"
+                          " AND cancel_requested = 0");
   return row.with(job, std::int64_t{attempt}).step();
 }
 
 std::optional<JobRecord> JobStore::job_to_help(const std::vector<std::int64_t>& passed_over) {
   const std::lock_guard lock(mutex_);
-  Statement rows(
+  database::Statement rows(
       *database_,
       select_jobs("WHERE state = 'running' AND cancel_requested = 0 AND seq IN (SELECT job"
                   " FROM shared_stages WHERE from_front + from_back < bundles AND program = ?"
@@ -83,8 +84,8 @@ void JobStore::charge(std::string_view owner, std::int64_t ms) {
 
 void JobStore::drop_shared_work(std::int64_t job) {
   transact([&] {
-    Statement(*database_, "DELETE FROM shared_stages WHERE job = ?").with(job).run();
-    Statement(*database_, "DELETE FROM shared_bundles WHERE job = ?").with(job).run();
+    database::Statement(*database_, "DELETE FROM shared_stages WHERE job = ?").with(job).run();
+    database::Statement(*database_, "DELETE FROM shared_bundles WHERE job = ?").with(job).run();
   });
 }
 
@@ -93,12 +94,13 @@ void JobStore::drop_ended_shared_work() {
       " WHERE job NOT IN (SELECT seq FROM jobs WHERE state IN ('queued', 'running'))";
   {
     const std::lock_guard lock(mutex_);
-    Statement any(*database_, "SELECT 1 FROM shared_stages UNION ALL SELECT 1 FROM shared_bundles");
+    database::Statement any(*database_,
+                            "SELECT 1 FROM shared_stages UNION ALL SELECT 1 FROM shared_bundles");
     if (!any.step()) return;
   }
   transact([&] {
-    Statement(*database_, std::string("DELETE FROM shared_stages") + kEnded).run();
-    Statement(*database_, std::string("DELETE FROM shared_bundles") + kEnded).run();
+    database::Statement(*database_, std::string("DELETE FROM shared_stages") + kEnded).run();
+    database::Statement(*database_, std::string("DELETE FROM shared_bundles") + kEnded).run();
   });
 }
 

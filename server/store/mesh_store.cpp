@@ -9,7 +9,7 @@ constexpr const char* kSelect =
 
 std::string select_meshes(std::string_view rest) { return kSelect + std::string(rest); }
 
-std::vector<MeshRecord> mesh_rows(Statement& statement) {
+std::vector<MeshRecord> mesh_rows(database::Statement& statement) {
   std::vector<MeshRecord> meshes;
   while (statement.step()) {
     meshes.push_back({.id = statement.text(0),
@@ -39,7 +39,7 @@ void MeshStore::put(const MeshRecord& mesh) {
 
 std::optional<MeshRecord> MeshStore::find(std::string_view owner, std::string_view sha256) {
   const std::lock_guard lock(mutex_);
-  Statement statement(*database_, select_meshes("WHERE owner = ? AND sha256 = ?"));
+  database::Statement statement(*database_, select_meshes("WHERE owner = ? AND sha256 = ?"));
   std::vector<MeshRecord> found = mesh_rows(statement.with(owner, sha256));
   if (found.empty()) return std::nullopt;
   return std::move(found.front());
@@ -58,14 +58,14 @@ void MeshStore::set_stored_bytes(std::string_view id, std::int64_t bytes) {
 
 bool MeshStore::has(std::string_view id) {
   const std::lock_guard lock(mutex_);
-  Statement statement(*database_, select_meshes("WHERE id = ?"));
+  database::Statement statement(*database_, select_meshes("WHERE id = ?"));
   return statement.with(id).step();
 }
 
 std::vector<MeshRecord> MeshStore::unused_since(std::int64_t epoch_ms) {
   const std::lock_guard lock(mutex_);
-  Statement statement(*database_,
-                      select_meshes("WHERE kept_since_ms < ? ORDER BY kept_since_ms, seq"));
+  database::Statement statement(
+      *database_, select_meshes("WHERE kept_since_ms < ? ORDER BY kept_since_ms, seq"));
   return mesh_rows(statement.with(epoch_ms));
 }
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/store/database_address.hpp"
+#include "server/database/database_address.hpp"
 
 namespace unwrapd::server::store {
 
@@ -29,7 +29,7 @@ struct MeshRecord {
 class MeshStore {
  public:
   /// store: the database of the jobs, whose tables are there already.
-  explicit MeshStore(const DatabaseAddress& store) : database_(store.open()) {}
+  explicit MeshStore(const database::DatabaseAddress& store) : database_(store.open()) {}
 
   /// Replaces the owner's mesh of this digest, if there is one.
   void put(const MeshRecord& mesh);
@@ -48,11 +48,11 @@ class MeshStore {
   template <class... Values>
   void update(std::string_view sql, const Values&... values) {
     const std::lock_guard lock(mutex_);
-    database_->change([&] { Statement(*database_, sql).with(values...).run(); });
+    database_->change([&] { database::Statement(*database_, sql).with(values...).run(); });
   }
 
   std::mutex mutex_;
-  const std::shared_ptr<Database> database_;
+  const std::shared_ptr<database::Database> database_;
 };
 
 }  // namespace unwrapd::server::store

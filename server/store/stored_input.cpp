@@ -4,8 +4,8 @@
 
 namespace unwrapd::server::store {
 
-LoadedInput::LoadedInput(const BlobStore& blobs, const JobRecord& job)
-    : record_(job), document_(blobs.read(job.id, kDocumentFile)) {
+LoadedInput::LoadedInput(const blobs::BlobStore& blobs, const JobRecord& job)
+    : record_(job), document_(blobs.read(job.id, blobs::kDocumentFile)) {
   record_.options = whole_options(blobs, job);
   buffers_.reserve(job.input.buffers.size());
   for (const StoredBuffer& buffer : job.input.buffers)
@@ -19,26 +19,26 @@ asset::Input LoadedInput::input() const {
 }
 
 void shorten_options(JobRecord& job, const UploadFolder& folder) {
-  const std::string text = text_of(job.options);
+  const std::string text = api::to_text(job.options);
   if (text.size() <= kLongOptions) return;
   const auto bytes = static_cast<std::int64_t>(text.size());
   folder.room.take(bytes);
-  write_file(folder.path / kOptionsFile, text);
+  write_file(folder.path / blobs::kOptionsFile, text);
   job.stored_bytes += bytes;
   job.options = without_long_members(job.options);
 }
 
 api::Json without_long_members(const api::Json& options) {
-  if (text_of(options).size() <= kLongOptions) return options;
+  if (api::to_text(options).size() <= kLongOptions) return options;
   api::Json shown = api::Json::object();
   for (const auto& [name, value] : options.items())
-    if (text_of(value).size() <= kLongMember) shown[name] = value;
+    if (api::to_text(value).size() <= kLongMember) shown[name] = value;
   return shown;
 }
 
-api::Json whole_options(const BlobStore& blobs, const JobRecord& job) {
-  if (!blobs.has(job.id, kOptionsFile)) return job.options;
-  return api::Json::parse(blobs.read(job.id, kOptionsFile));
+api::Json whole_options(const blobs::BlobStore& blobs, const JobRecord& job) {
+  if (!blobs.has(job.id, blobs::kOptionsFile)) return job.options;
+  return api::Json::parse(blobs.read(job.id, blobs::kOptionsFile));
 }
 
 }  // namespace unwrapd::server::store

@@ -9,7 +9,7 @@
 
 #include "api/json.hpp"
 #include "core/asset/asset.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/store/job_record.hpp"
 #include "server/store/upload_meter.hpp"
 
@@ -27,13 +27,13 @@ void shorten_options(JobRecord& job, const UploadFolder& folder);
 api::Json without_long_members(const api::Json& options);
 
 /// All options of a stored job. Throws Error{storage_corrupt}.
-api::Json whole_options(const BlobStore& blobs, const JobRecord& job);
+api::Json whole_options(const blobs::BlobStore& blobs, const JobRecord& job);
 
 /// A job's input in memory, and its record with all its options, checked against their digests. The
 /// views of input() live as long as this. Throws Error{storage_corrupt}.
 class LoadedInput {
  public:
-  LoadedInput(const BlobStore& blobs, const JobRecord& job);
+  LoadedInput(const blobs::BlobStore& blobs, const JobRecord& job);
   [[nodiscard]] asset::Input input() const;
   [[nodiscard]] const JobRecord& record() const { return record_; }
 

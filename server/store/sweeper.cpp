@@ -14,17 +14,17 @@ constexpr std::size_t kNamesTold = 20;
 constexpr auto kAnyTime = std::numeric_limits<std::int64_t>::max();
 
 /// Removes the row first: files without a row are swept if the rest fails.
-void remove(const MeshRecord& mesh, MeshStore& meshes, BlobStore& blobs) {
+void remove(const MeshRecord& mesh, MeshStore& meshes, blobs::BlobStore& blobs) {
   blobs.room().free_by([&] { meshes.remove(mesh.id); });
   blobs.remove(mesh.id);
 }
 
-void expire(const std::string& job, JobStore& store, BlobStore& blobs) {
+void expire(const std::string& job, JobStore& store, blobs::BlobStore& blobs) {
   blobs.room().free_by([&] { store.set_expired(job); });
   blobs.remove(job);
 }
 
-void tell_swept(const Swept& swept, const Log& log) {
+void tell_swept(const blobs::Swept& swept, const Log& log) {
   if (swept.removed > 0) log.info("folders of ended jobs removed", {{"folders", swept.removed}});
   if (swept.returned > 0)
     log.warning("folders returned from lost, their jobs are in the database again",
@@ -42,31 +42,33 @@ void tell_swept(const Swept& swept, const Log& log) {
 
 }  // namespace
 
-void sweep_at_start(JobStore& store, MeshStore& meshes, BlobStore& blobs, const Log& log) {
-  const Swept swept = blobs.sweep(
+void sweep_at_start(JobStore& store, MeshStore& meshes, blobs::BlobStore& blobs, const Log& log) {
+  const blobs::Swept swept = blobs.sweep(
       [&](const std::string& name) {
         if (!is_mesh_id(name)) return store.fate_of(name);
-        return meshes.has(name) ? FolderFate::kept : FolderFate::unknown;
+        return meshes.has(name) ? blobs::FolderFate::kept : blobs::FolderFate::unknown;
       },
       store.now().kept_ms());
   tell_swept(swept, log);
   store.mend_stored_bytes(swept.sharing);
 }
 
-void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep) {
+void sweep(JobStore& store, blobs::BlobStore& blobs, std::int64_t now_ms,
+           std::chrono::seconds keep) {
   const std::int64_t keep_ms = std::chrono::milliseconds(keep).count();
   for (const std::string& job : store.finished_before(now_ms - keep_ms)) expire(job, store, blobs);
   blobs.room().free_by([&] { store.forget_before(now_ms - 2 * keep_ms); });
 }
 
-void sweep(MeshStore& meshes, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep) {
+void sweep(MeshStore& meshes, blobs::BlobStore& blobs, std::int64_t now_ms,
+           std::chrono::seconds keep) {
   const std::int64_t keep_ms = std::chrono::milliseconds(keep).count();
   for (const MeshRecord& mesh : meshes.unused_since(now_ms - keep_ms)) {
     if (!blobs.is_shared(mesh.id)) remove(mesh, meshes, blobs);
   }
 }
 
-bool evict_oldest(JobStore& store, MeshStore& meshes, BlobStore& blobs) {
+bool evict_oldest(JobStore& store, MeshStore& meshes, blobs::BlobStore& blobs) {
   if (blobs.lost().give_up_first()) return true;
   const std::vector<std::string> finished = store.finished_before(kAnyTime, 1);
   for (const MeshRecord& mesh : meshes.unused_since(kAnyTime)) {

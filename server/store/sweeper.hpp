@@ -7,30 +7,32 @@
 #include <cstdint>
 
 #include "server/base/log.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/mesh_store.hpp"
 
 namespace unwrapd::server::store {
 
 /// One sweep at this time, of Moment::kept_ms().
-void sweep(JobStore& store, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
+void sweep(JobStore& store, blobs::BlobStore& blobs, std::int64_t now_ms,
+           std::chrono::seconds keep);
 
 /// The same of stored meshes: those that were not used for so long, and that no job shares.
-void sweep(MeshStore& meshes, BlobStore& blobs, std::int64_t now_ms, std::chrono::seconds keep);
+void sweep(MeshStore& meshes, blobs::BlobStore& blobs, std::int64_t now_ms,
+           std::chrono::seconds keep);
 
 /// Gives up what is in DIR/lost, then the files of the job that ended first, or the mesh that is
 /// unused for longer and that no job shares; false when there is nothing.
-bool evict_oldest(JobStore& store, MeshStore& meshes, BlobStore& blobs);
+bool evict_oldest(JobStore& store, MeshStore& meshes, blobs::BlobStore& blobs);
 
 /// Before anything else has files, or where other nodes have some: BlobStore::sweep() by the rows
 /// of both, and what it has done is told.
-void sweep_at_start(JobStore& store, MeshStore& meshes, BlobStore& blobs, const Log& log);
+void sweep_at_start(JobStore& store, MeshStore& meshes, blobs::BlobStore& blobs, const Log& log);
 
 /// Sweeps, whatever the time of day is set to, and has it noted when it was.
 class Sweeper {
  public:
-  Sweeper(JobStore& store, MeshStore& meshes, BlobStore& blobs, const Log& log,
+  Sweeper(JobStore& store, MeshStore& meshes, blobs::BlobStore& blobs, const Log& log,
           std::chrono::seconds keep)
       : store_(store), meshes_(meshes), blobs_(blobs), log_(log), keep_(keep) {}
 
@@ -43,7 +45,7 @@ class Sweeper {
 
   JobStore& store_;
   MeshStore& meshes_;
-  BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   const Log& log_;
   const std::chrono::seconds keep_;
 };

@@ -7,7 +7,7 @@
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/uploads/job_name.hpp"
 
 namespace unwrapd::server::uploads {
@@ -126,7 +126,7 @@ class PartWriter {
   void start_document() {
     if (has_document_) malformed("The form has two meshes; send one.");
     has_document_ = true;
-    open(store::kDocumentFile, upload_.input.sha256);
+    open(blobs::kDocumentFile, upload_.input.sha256);
   }
 
   void start_buffer(const http::Part& part) {
@@ -139,7 +139,7 @@ class PartWriter {
       malformed("Two parts have the same filename; send every buffer once.");
     if (buffers.size() == kMaxBuffers) malformed("The form has over 1000 buffers; send fewer.");
     buffers.push_back(
-        {.uri = part.filename, .file = store::buffer_file(buffers.size()), .sha256 = {}});
+        {.uri = part.filename, .file = blobs::buffer_file(buffers.size()), .sha256 = {}});
     open(buffers.back().file, buffers.back().sha256);
   }
 
@@ -174,7 +174,7 @@ class PartWriter {
 Upload receive_asset(http::BodyReader& body, const store::UploadFolder& folder) {
   Upload upload;
   Sha256 hash;
-  GrowingFile file(folder.path / store::kDocumentFile, folder.room);
+  GrowingFile file(folder.path / blobs::kDocumentFile, folder.room);
   body.read([&](std::string_view bytes) {
     hash.add(bytes);
     upload.input.bytes += static_cast<std::int64_t>(bytes.size());

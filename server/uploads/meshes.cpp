@@ -90,7 +90,7 @@ SentMesh Meshes::settle(const http::Request& request, store::MeshRecord mesh,
                         const std::string& upload) {
   const std::lock_guard lock(settling_);
   const std::optional<store::MeshRecord> known = store_.find(mesh.owner, mesh.sha256);
-  if (known && results::find_whole(blobs_, known->id, std::string(store::kDocumentFile))) {
+  if (known && results::find_whole(blobs_, known->id, std::string(blobs::kDocumentFile))) {
     store_.use(known->id, mesh.kept_since_ms, mesh.media_type);
     blobs_.drop_upload(upload);
     return {.mesh = find(mesh.owner, mesh.sha256), .is_new = false};
@@ -98,7 +98,7 @@ SentMesh Meshes::settle(const http::Request& request, store::MeshRecord mesh,
   const std::int64_t most = request.caller.quota.max_bytes;
   if (most > 0 && jobs_.usage(mesh.owner).stored_bytes + mesh.bytes > most)
     throw quota_exceeded(most);
-  blobs_.keep_upload(upload, mesh.id, {{std::string(store::kDocumentFile), mesh.sha256}});
+  blobs_.keep_upload(upload, mesh.id, {{std::string(blobs::kDocumentFile), mesh.sha256}});
   try {
     store_.put(mesh);
   } catch (const StoreAway& away) {
@@ -123,7 +123,7 @@ store::JobInput Meshes::share(const std::string& owner, const std::string& sha25
                               const std::string& upload, const std::string& where) {
   const store::MeshRecord mesh = find(owner, sha256, where);
   if (!blobs_.share_document(mesh.id, upload)) throw no_mesh(where);
-  if (!results::find_whole(blobs_, mesh.id, std::string(store::kDocumentFile))) {
+  if (!results::find_whole(blobs_, mesh.id, std::string(blobs::kDocumentFile))) {
     throw Error(ErrorCode::storage_corrupt,
                 "The stored mesh is damaged; send it again by PUT /v1/meshes/{sha256}.", where);
   }

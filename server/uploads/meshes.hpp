@@ -9,9 +9,9 @@
 
 #include "api/mesh.hpp"
 #include "server/base/metrics.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/http/http.hpp"
 #include "server/results/renderer.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/mesh_store.hpp"
 #include "server/uploads/upload_budget.hpp"
@@ -26,7 +26,7 @@ struct SentMesh {
 /// Thread-safe.
 class Meshes {
  public:
-  Meshes(store::MeshStore& store, store::JobStore& jobs, store::BlobStore& blobs,
+  Meshes(store::MeshStore& store, store::JobStore& jobs, blobs::BlobStore& blobs,
          const UploadRooms& rooms, results::Renderer& renderer)
       : store_(store), jobs_(jobs), blobs_(blobs), rooms_(rooms), renderer_(renderer) {}
 
@@ -57,7 +57,7 @@ class Meshes {
 
   store::MeshStore& store_;
   store::JobStore& jobs_;
-  store::BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   const UploadRooms& rooms_;
   results::Renderer& renderer_;
   std::mutex settling_;  // one upload at a time takes its name

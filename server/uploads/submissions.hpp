@@ -8,11 +8,11 @@
 
 #include "api/limits.hpp"
 #include "api/options.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/http/http.hpp"
 #include "server/http/media_types.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "server/sources/sources.hpp"
-#include "server/store/blob_store.hpp"
 #include "server/uploads/job_input.hpp"
 #include "server/uploads/meshes.hpp"
 #include "server/uploads/upload_budget.hpp"
@@ -22,7 +22,7 @@ namespace unwrapd::server::uploads {
 
 class Submissions {
  public:
-  Submissions(jobs::JobQueue& queue, store::JobStore& store, store::BlobStore& blobs,
+  Submissions(jobs::JobQueue& queue, store::JobStore& store, blobs::BlobStore& blobs,
               const api::Limits& limits, const webhooks::WebhookConfig& webhooks, Meshes& meshes,
               sources::Sources& sources, const UploadRooms& rooms)
       : queue_(queue),
@@ -65,7 +65,7 @@ class Submissions {
 
   jobs::JobQueue& queue_;
   store::JobStore& store_;
-  store::BlobStore& blobs_;
+  blobs::BlobStore& blobs_;
   const UploadRooms& rooms_;
   const api::Limits& limits_;
   const webhooks::WebhookConfig& webhooks_;

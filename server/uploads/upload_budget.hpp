@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include "server/blobs/disk_budget.hpp"
 #include "server/http/http.hpp"
-#include "server/store/disk_budget.hpp"
 #include "server/store/quota_reservations.hpp"
 #include "server/store/upload_meter.hpp"
 
@@ -18,7 +18,7 @@ namespace unwrapd::server::uploads {
 /// Shared by all uploads.
 struct UploadRooms {
   store::QuotaReservations& reservations;
-  store::DiskBudget& disk;
+  blobs::DiskBudget& disk;
 };
 
 struct UploadSize {
@@ -55,7 +55,7 @@ class UploadBudget {
   [[nodiscard]] bool reservation(std::int64_t bytes);
   void claim_ahead(std::int64_t all);
 
-  store::DiskBudget& disk_;
+  blobs::DiskBudget& disk_;
   const std::int64_t quota_;  // 0: none
   const std::string upload_;
   const UploadSize size_;

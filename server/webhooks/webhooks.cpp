@@ -91,7 +91,7 @@ std::int64_t webhook_pause_ms(int first_seconds, int failed_before, const Webhoo
   return std::min(std::max(own_ms, asked_s * kMsPerSecond), kLongestPauseMs);
 }
 
-Webhooks::Webhooks(const store::DatabaseAddress& store, std::string server_secret,
+Webhooks::Webhooks(const database::DatabaseAddress& store, std::string server_secret,
                    WebhookConfig config, const Log& log, std::function<Moment()> now,
                    bool is_shared)
     : secret_(std::move(server_secret)),
@@ -113,7 +113,7 @@ Webhooks::Webhooks(const store::DatabaseAddress& store, std::string server_secre
 
 /// Makes calls due that were put off when the clock was set back while no server ran.
 void Webhooks::put_forward() {
-  const store::Dialect& sql = database_->dialect();
+  const database::Dialect& sql = database_->dialect();
   const std::string failed = std::string(sql.greatest) + "(tries - 1, 0)";
   const std::string latest =
       "?1 + " + std::string(sql.least) + "(?2 << CAST(" + failed + " AS INTEGER), ?3)";
@@ -124,7 +124,7 @@ void Webhooks::put_forward() {
 std::int64_t Webhooks::due_count() {
   const std::lock_guard lock(mutex_);
   try {
-    store::Statement count(*database_, "SELECT COUNT(*) FROM deliveries WHERE due_ms <= ?");
+    database::Statement count(*database_, "SELECT COUNT(*) FROM deliveries WHERE due_ms <= ?");
     count.with(now_().kept_ms()).step();
     counted_due_ = count.number(0);
   } catch (const Error&) {  // it is told elsewhere that the store is away
@@ -134,7 +134,7 @@ std::int64_t Webhooks::due_count() {
 
 /// The calls that are due and not being made, in the order of their turns.
 std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
-  store::Statement statement(
+  database::Statement statement(
       *database_,
       "SELECT seq, owner, url, due_ms FROM deliveries WHERE due_ms <= ? ORDER BY due_ms");
   statement.with(now_ms);
@@ -156,7 +156,7 @@ std::vector<Webhooks::Due> Webhooks::due(std::int64_t now_ms) {
 }
 
 Webhooks::Delivery Webhooks::load(std::int64_t seq) {
-  store::Statement statement(
+  database::Statement statement(
       *database_, "SELECT job, owner, trace, url, body, tries FROM deliveries WHERE seq = ?");
   statement.with(seq).step();
   return {.seq = seq,
@@ -232,7 +232,8 @@ bool Webhooks::claim(const Due& due) {
   const bool is_late = now_().kept_ms() - due.due_ms > kTimeForOthersMs;
   if (!is_late && !may_call(due.url, config_)) return false;
   return database_->change([&] {
-    store::Statement(*database_, "UPDATE deliveries SET due_ms = ?3 WHERE seq = ?1 AND due_ms = ?2")
+    database::Statement(*database_,
+                        "UPDATE deliveries SET due_ms = ?3 WHERE seq = ?1 AND due_ms = ?2")
         .with(due.seq, due.due_ms, now_().kept_ms() + kLongestCallMs)
         .run();
     return database_->changes() == 1;

@@ -18,7 +18,7 @@
 
 #include "server/base/log.hpp"
 #include "server/base/retention_clock.hpp"
-#include "server/store/database_address.hpp"
+#include "server/database/database_address.hpp"
 #include "server/webhooks/webhook_http.hpp"
 #include "server/webhooks/webhook_pool.hpp"
 #include "server/webhooks/webhook_url.hpp"
@@ -43,7 +43,7 @@ class Webhooks {
  public:
   /// store: the database of the jobs, whose tables are there already. now: JobStore::now().
   /// is_shared: other nodes make the calls in it, too.
-  Webhooks(const store::DatabaseAddress& store, std::string server_secret, WebhookConfig config,
+  Webhooks(const database::DatabaseAddress& store, std::string server_secret, WebhookConfig config,
            const Log& log, std::function<Moment()> now, bool is_shared = false);
 
   /// Begins the calls that are due as far as there is room. The owner with the fewest calls comes
@@ -59,7 +59,7 @@ class Webhooks {
   /// A change by one statement.
   template <class... Values>
   void update(std::string_view sql, const Values&... values) {
-    database_->change([&] { store::Statement(*database_, sql).with(values...).run(); });
+    database_->change([&] { database::Statement(*database_, sql).with(values...).run(); });
   }
 
   void put_forward();
@@ -78,7 +78,7 @@ class Webhooks {
   const std::function<Moment()> now_;
   const bool is_shared_;
   std::mutex mutex_;  // of the next two
-  const std::shared_ptr<store::Database> database_;
+  const std::shared_ptr<database::Database> database_;
   std::set<std::int64_t> being_made_;  // seq
   std::int64_t counted_due_ = 0;
   WebhookPool pool_;  // last: its threads use the others

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "api/json.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/work/job_process.hpp"
 
 namespace unwrapd::server::work {
@@ -103,7 +103,7 @@ void Conversation::hand_over(const Frame& frame) {
   if (frame.kind == FrameKind::result && files_.take_result(frame.name))
     return output_.result(frame.name, frame.bytes);
   const bool is_file = frame.kind == FrameKind::file && files_.take(frame.name);
-  if (!is_file || (frame.name == store::kTotalsFile && !is_totals(frame.bytes))) misbehaved();
+  if (!is_file || (frame.name == blobs::kTotalsFile && !is_totals(frame.bytes))) misbehaved();
   output_.file(frame.name, frame.bytes);
 }
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "server/base/threads.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/work/conversation.hpp"
 #include "server/work/job_frames.hpp"
 #include "server/work/job_worker.hpp"

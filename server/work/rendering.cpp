@@ -142,7 +142,7 @@ std::string mesh_analysis(const RenderingInput& mesh, std::size_t memory_bytes,
     if (error.code() == ErrorCode::cancelled) throw;
     json = {{"problem", api::problem(error)}};
   }
-  return json.dump(-1, ' ', false, api::Json::error_handler_t::replace);
+  return api::to_text(json);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "core/base/error.hpp"
 #include "core/base/shared_cache.hpp"
 #include "core/unwrap.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/store/stored_input.hpp"
 #include "server/work/lambda_selection.hpp"
 #include "server/work/stage_timer.hpp"
@@ -85,7 +85,7 @@ void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageT
                 bool with_vertex_maps) {
   const std::vector<Unwrapped>& maps = made.maps;
   for (std::size_t map = 0; map < maps.size(); ++map)
-    output.file(map_file(store::kUvFile, map), encode_uvs(maps[map].surfaces));
+    output.file(map_file(blobs::kUvFile, map), encode_uvs(maps[map].surfaces));
   check_stop(task);
   const api::ReportContext context = context_of(task, clock);
   for (std::size_t map = 0; map < maps.size(); ++map) {
@@ -93,9 +93,9 @@ void write_maps(const JobTask& task, JobOutput& output, const Made& made, StageT
     if (map == 0) {
       for (const Note& note : maps[map].report.notes) output.note(note);
       for (const Note& note : own.notes) output.note(note);
-      output.file(store::kTotalsFile, api::totals_json(maps[map].report, own).dump());
+      output.file(blobs::kTotalsFile, api::totals_json(maps[map].report, own).dump());
     }
-    output.file(map_file(store::kReportFile, map), api::to_json(maps[map].report, own).dump());
+    output.file(map_file(blobs::kReportFile, map), api::to_json(maps[map].report, own).dump());
   }
 }
 

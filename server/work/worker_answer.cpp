@@ -3,7 +3,7 @@
 #include "api/error_table.hpp"
 #include "api/json.hpp"
 #include "core/base/byte_pack.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/work/lambda_selection.hpp"
 
 namespace unwrapd::server::work {
@@ -14,9 +14,7 @@ constexpr std::size_t kMaxReason = 1000;
 
 /// The text of an error, which may quote a mesh: invalid UTF-8 is replaced, and a long text is cut.
 std::string readable(std::string_view text) {
-  constexpr auto replace = api::Json::error_handler_t::replace;
-  const std::string json = api::Json(text.substr(0, kMaxErrorText)).dump(-1, ' ', false, replace);
-  return api::Json::parse(json).get<std::string>();
+  return api::Json::parse(api::to_text(text.substr(0, kMaxErrorText))).get<std::string>();
 }
 
 }  // namespace
@@ -105,10 +103,10 @@ bool is_result_format(std::string_view name) {
   return name == "glb" || name == "gltf" || name == "obj";
 }
 
-AnswerFiles::AnswerFiles(std::size_t maps) : left_{std::string(store::kTotalsFile)} {
+AnswerFiles::AnswerFiles(std::size_t maps) : left_{std::string(blobs::kTotalsFile)} {
   for (std::size_t map = 0; map < maps; ++map) {
-    left_.insert(map_file(store::kUvFile, map));
-    left_.insert(map_file(store::kReportFile, map));
+    left_.insert(map_file(blobs::kUvFile, map));
+    left_.insert(map_file(blobs::kReportFile, map));
   }
 }
 

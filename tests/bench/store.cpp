@@ -29,7 +29,7 @@ double seconds_of(const std::function<void()>& work) {
 }
 
 struct Engine {
-  Engine(std::string engine, const store::DatabaseAddress& address)
+  Engine(std::string engine, const database::DatabaseAddress& address)
       : name(std::move(engine)), store(address) {}
 
   void round(int jobs) {
@@ -82,7 +82,7 @@ int run(int jobs) {
   const TempDir dir;
   std::vector<std::unique_ptr<Engine>> engines;
   engines.push_back(std::make_unique<Engine>("sqlite", dir.path() / store::kStoreFile));
-  if (const store::PostgresAddress postgres = postgres_of(dir.path()); !postgres.url.empty())
+  if (const database::PostgresAddress postgres = postgres_of(dir.path()); !postgres.url.empty())
     engines.push_back(std::make_unique<Engine>("postgresql", postgres));
   for (int round = 0; round < kRounds; ++round)
     for (const auto& engine : engines) engine->round(jobs / kRounds);

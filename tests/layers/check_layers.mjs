@@ -21,7 +21,7 @@ const ONLY_IN = [
   { header: /^webp\//, files: /^core\/texture\/webp\.cpp$/ },
   { header: /^zip\.h$/, files: /^(core\/asset\/zip\.cpp$|tests\/asset\/)/ },
   { header: /^yaml\.h$/, files: /^api\/contract\// },
-  { header: /^postgresql\//, files: /^server\/store\// },
+  { header: /^postgresql\//, files: /^server\/database\// },
   { header: /^sqlite3\.h$/, files: /^(server|tests\/server)\// },
   { header: /^(draco\/|meshoptimizer\.h|tiny_gltf\.h)/, files: /^(core\/asset|tests\/asset|tests\/fuzz)\// },
   { header: /^Eigen\//, files: /^(core|server|api|tests)\// },

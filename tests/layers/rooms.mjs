@@ -7,7 +7,7 @@ const TERMS = ["core/base", "core/mesh", "core/types"];
 const SOLVING = [...TERMS, "core/linear", "core/measure", "core/solve/base"];
 const ASSET = [...TERMS, "core/asset/base"];
 const DOCUMENT = [...ASSET, "core/asset/gltf"];
-const STORED = ["core/base", "api", "server/base", "server/store"];
+const STORED = ["core/base", "api", "server/base", "server/database", "server/blobs", "server/store"];
 
 /** Folder, duty, the rooms that it may include. */
 export const ROOMS = [
@@ -51,7 +51,9 @@ export const ROOMS = [
   ["server/http", "the edge: connections, TLS, limits, framing, routing", ["core/base", "api", "server/base"]],
   ["server/outbound", "calls to addresses that clients chose: checked, and made by libcurl", ["core/base", "server/base"]],
   ["server/bucket", "objects in a bucket that speaks the API of Amazon S3", ["core/base", "server/base", "server/outbound"]],
-  ["server/store", "jobs in SQLite or PostgreSQL, their files, quotas, sweeping", ["core/asset", "core/asset/base", ...STORED, "server/bucket"]],
+  ["server/database", "SQL on SQLite or PostgreSQL, and the tables of the store", ["core/base", "api", "server/base"]],
+  ["server/blobs", "the files of jobs, on disk, shared or in a bucket, and the room that they take", ["core/base", "api", "server/base", "server/bucket"]],
+  ["server/store", "jobs and meshes: their rows with their files, quotas, sweeping", ["core/asset", "core/asset/base", ...STORED]],
   ["server/work", "one job from input bytes to output bytes, in its own process", [...TERMS, ...STORED, "core", "core/asset", "core/figure", "core/pipeline"]],
   ["server/jobs", "the queue, fair turns, workers, events", [...STORED, "server/http", "server/work"]],
   ["server/access", "API keys, signed links, upload tickets", [...STORED, "core/figure", "server/http", "server/jobs"]],

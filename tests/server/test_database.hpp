@@ -12,16 +12,16 @@
 namespace unwrapd::server {
 
 /// Without a URL: the test is for SQLite.
-inline store::PostgresAddress postgres_of(const std::filesystem::path& folder) {
+inline database::PostgresAddress postgres_of(const std::filesystem::path& folder) {
   const char* server = std::getenv("TEST_POSTGRESQL");
   if (server == nullptr) return {};
   const std::string schema = "t" + std::to_string(std::hash<std::string>()(folder.string()));
-  const auto database = store::DatabaseAddress(store::PostgresAddress{.url = server}).open();
+  const auto database = database::DatabaseAddress(database::PostgresAddress{.url = server}).open();
   database->transact([&] { database->run("CREATE SCHEMA IF NOT EXISTS " + schema); });
   return {.url = std::string(server) + "&options=-csearch_path%3D" + schema};
 }
 
-inline store::DatabaseAddress database_in(const std::filesystem::path& folder) {
+inline database::DatabaseAddress database_in(const std::filesystem::path& folder) {
   return store::address_in(folder, postgres_of(folder));
 }
 

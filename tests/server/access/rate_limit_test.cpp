@@ -46,11 +46,11 @@ TEST_F(KeyRates, AllowAMinutesWorthAtOnce) {
 }
 
 TEST_F(KeyRates, AClockThatWasSetBackLocksNobodyOut) {
-  const store::PostgresAddress address = postgres_of(dir_.path());
+  const database::PostgresAddress address = postgres_of(dir_.path());
   if (address.url.empty()) return;  // a file's limits go by another clock
   const ApiKey limited = key(6);
   EXPECT_EQ(keys_.wait_seconds(limited, 6), 0);
-  const auto database = store::DatabaseAddress(address).open();
+  const auto database = database::DatabaseAddress(address).open();
   database->change([&] { database->run("UPDATE rates SET full_us = full_us + 3600000000"); });
   EXPECT_EQ(keys_.wait_seconds(limited, 1), 0);
 }

@@ -7,8 +7,8 @@
 
 #include "server/access/key_store.hpp"
 #include "server/base/identity.hpp"
+#include "server/database/sqlite_database.hpp"
 #include "server/store/data_directory.hpp"
-#include "server/store/sqlite_database.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 
@@ -165,7 +165,7 @@ TEST_F(Backup, ACheckNamesWhatIsWrongWhileTheServerWorks) {
   const std::string other = succeeded("?resolution=64");
   EXPECT_THAT(check_store(config_.data).damaged, IsEmpty());
   damage(config_.data / "blobs" / id / "uv.bin");
-  store::SqliteDatabase(config_.data / store::kStoreFile)
+  database::SqliteDatabase(config_.data / store::kStoreFile)
       .run(("UPDATE jobs SET notes = '{' WHERE id = '" + other + "'").c_str());
   fs::create_directories(config_.data / "blobs" / "j_nobodys");
   const StoreReport found = check_store(config_.data);

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
+#include "server/database/sqlite_database.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/mesh_store.hpp"
-#include "server/store/sqlite_database.hpp"
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
 
@@ -53,8 +53,8 @@ class ClockThatIsSet : public testing::Test {
   }
 
   std::int64_t due_ms() const {
-    const store::SqliteDatabase deliveries(path());
-    store::Statement due(deliveries, "SELECT due_ms FROM deliveries");
+    const database::SqliteDatabase deliveries(path());
+    database::Statement due(deliveries, "SELECT due_ms FROM deliveries");
     return due.step() ? due.number(0) : 0;
   }
 
@@ -63,7 +63,7 @@ class ClockThatIsSet : public testing::Test {
   TempDir dir_;
   Times times_{.of_day_ms = 50 * kDay, .elapsed_ms = 7000};
   const Log log_{LogLevel::off};
-  store::BlobStore blobs_{dir_.path()};
+  blobs::BlobStore blobs_{dir_.path()};
   store::JobStore store_{path(), [this] { return times_; }};
   store::MeshStore meshes_{path()};
   store::Sweeper sweeper_{store_, meshes_, blobs_, log_, std::chrono::seconds(100)};
@@ -88,7 +88,7 @@ TEST_F(ClockThatIsSet, KeepsForTheirTimeResultsThatCameBeforeThatWasNoted) {
     EXPECT_EQ(due_ms(), store_.now().kept_ms()) << "a call is due at once";
     expect_kept_for_100_s();
     store_.remove("j_1");
-    store::SqliteDatabase(path()).run("DELETE FROM deliveries");
+    database::SqliteDatabase(path()).run("DELETE FROM deliveries");
   }
 }
 

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "server/base/errors.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/config/component_config.hpp"
 #include "server/http/listener.hpp"
-#include "server/store/blob_store.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/few_descriptors.hpp"
 #include "tests/server/raw_client.hpp"
@@ -54,7 +54,7 @@ TEST(Descriptors, AreNotNeededToRemoveAFile) {
 
 TEST(Descriptors, WithoutWhichNothingCanBeRemovedLeaveNoFolderBehind) {
   const TempDir dir;
-  store::BlobStore blobs(dir.path());
+  blobs::BlobStore blobs(dir.path());
   const std::filesystem::path upload = blobs.begin_upload("u");
   write_file(upload / "document", "x");
   {

@@ -23,7 +23,7 @@ class FeedOutputs : public testing::Test {
   [[nodiscard]] std::int64_t told() const { return job_.feed->next_seq() - 1; }
 
   TempDir dir_;
-  store::BlobStore blobs_{dir_.path()};
+  blobs::BlobStore blobs_{dir_.path()};
   store::JobStore store_{database_in(dir_.path())};
   store::QuotaReservations reservations_{store_};
   store::QuotaReservation reservation_{reservations_, "his"};

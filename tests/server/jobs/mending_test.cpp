@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "server/base/errors.hpp"
+#include "server/database/sqlite_database.hpp"
 #include "server/jobs/job_queue.hpp"
-#include "server/store/sqlite_database.hpp"
 #include "tests/server/temp_dir.hpp"
 
 namespace unwrapd::server::jobs {
@@ -19,17 +19,17 @@ using api::JobState;
 /// What becomes of the next change.
 enum class Fate { pass, made_then_away, made_unheard, lost_in_doubt, away };
 
-class GoneDatabase final : public store::Database {
+class GoneDatabase final : public database::Database {
  public:
   GoneDatabase(const std::filesystem::path& file, Fate& next) : file_(file), next_(next) {}
 
   void run(const std::string& sql) override { file_.run(sql); }
-  [[nodiscard]] std::unique_ptr<store::Cursor> prepare(std::string_view sql) const override {
+  [[nodiscard]] std::unique_ptr<database::Cursor> prepare(std::string_view sql) const override {
     if (std::exchange(is_away_, false)) go_away(false);
     return file_.prepare(sql);
   }
   [[nodiscard]] int changes() const override { return file_.changes(); }
-  [[nodiscard]] const store::Dialect& dialect() const override { return file_.dialect(); }
+  [[nodiscard]] const database::Dialect& dialect() const override { return file_.dialect(); }
   [[nodiscard]] std::int64_t version() const override { return file_.version(); }
   [[nodiscard]] std::string step_to(std::int64_t version) const override {
     return file_.step_to(version);
@@ -39,7 +39,7 @@ class GoneDatabase final : public store::Database {
   [[nodiscard]] bool was_away() override { return std::exchange(was_away_, false); }
 
  private:
-  void apply_all(store::Extent /*extent*/, const std::function<void()>& make) override {
+  void apply_all(database::Extent /*extent*/, const std::function<void()>& make) override {
     const Fate fate = std::exchange(next_, Fate::pass);
     if (fate != Fate::lost_in_doubt && fate != Fate::away) file_.transact(make);
     is_away_ = fate == Fate::made_then_away;
@@ -50,7 +50,7 @@ class GoneDatabase final : public store::Database {
     throw StoreAway(StorePart::database, "gone", in_doubt);
   }
 
-  store::SqliteDatabase file_;
+  database::SqliteDatabase file_;
   Fate& next_;
   mutable bool is_away_ = false;  // for the next statement
   mutable bool was_away_ = false;
@@ -79,10 +79,10 @@ class Mending : public testing::Test {
 
   TempDir dir_;
   Fate next_ = Fate::pass;
-  store::JobStore store_{store::DatabaseAddress([this]() -> std::shared_ptr<store::Database> {
+  store::JobStore store_{database::DatabaseAddress([this]() -> std::shared_ptr<database::Database> {
     return std::make_unique<GoneDatabase>(dir_.path() / "jobs.sqlite", next_);
   })};
-  store::BlobStore blobs_{dir_.path()};
+  blobs::BlobStore blobs_{dir_.path()};
   EventFeed events_;
   const Log log_{LogLevel::off};
   JobQueue queue_{store_, blobs_, events_, log_, {}};

@@ -35,7 +35,7 @@ class Recovery : public testing::Test {
   TempDir dir_;
   std::unique_ptr<store::JobStore> store_ =
       std::make_unique<store::JobStore>(database_in(dir_.path()));
-  store::BlobStore blobs_{dir_.path()};
+  blobs::BlobStore blobs_{dir_.path()};
   EventFeed events_;
   const Log log_{LogLevel::off};
 };

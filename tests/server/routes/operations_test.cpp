@@ -11,9 +11,9 @@
 
 #include "server/base/metrics.hpp"
 #include "server/base/trace.hpp"
+#include "server/database/sqlite_database.hpp"
 #include "server/http/http_probe.hpp"
 #include "server/store/data_directory.hpp"
-#include "server/store/sqlite_database.hpp"
 
 namespace unwrapd::server::routes {
 namespace {
@@ -108,7 +108,7 @@ TEST_F(Operations, TheAdminPortAnswersProbesAndNothingElse) {
 
 TEST_F(Operations, TheServerIsNotReadyWhileNothingCanBeStored) {
   start();
-  store::SqliteDatabase behind(config_.data / store::kStoreFile);
+  database::SqliteDatabase behind(config_.data / store::kStoreFile);
   behind.run("ALTER TABLE jobs RENAME TO away");
   const httplib::Headers bypass_cache = {{"Cache-Control", "no-cache"}};
   expect_problem(client().Post("/v1/jobs", bypass_cache, grid_obj(2), "model/obj"), 500,

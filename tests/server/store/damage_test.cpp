@@ -4,9 +4,9 @@
 
 #include <fstream>
 
+#include "server/database/sqlite_database.hpp"
 #include "server/store/data_directory.hpp"
 #include "server/store/job_store.hpp"
-#include "server/store/sqlite_database.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/running_server.hpp"
 
@@ -46,12 +46,12 @@ class Damage : public RunningServer {
     return id;
   }
   void damage_table(const std::string& name) const {
-    SqliteDatabase database(store());
+    database::SqliteDatabase database(store());
     database.run("PRAGMA wal_checkpoint(TRUNCATE)");
-    Statement page(database,
-                   "SELECT rootpage, (SELECT page_size FROM pragma_page_size)"
-                   " FROM sqlite_schema WHERE name = '" +
-                       name + "'");
+    database::Statement page(database,
+                             "SELECT rootpage, (SELECT page_size FROM pragma_page_size)"
+                             " FROM sqlite_schema WHERE name = '" +
+                                 name + "'");
     ASSERT_TRUE(page.step());
     std::fstream file(store(), std::ios::in | std::ios::out | std::ios::binary);
     file.seekp((page.number(0) - 1) * page.number(1));
@@ -80,7 +80,7 @@ TEST_F(Damage, ThatComesLaterIsSeenByReadinessAndToldToClientsWithoutItsReason) 
   const std::string id = succeeded();
   EXPECT_EQ(client().Get("/readyz")->status, 200);
   damage_table("jobs");
-  SqliteDatabase(store()).run(
+  database::SqliteDatabase(store()).run(
       "UPDATE written SET times = times + 1");  // so that pages are read anew
   const auto answer = client().Get("/v1/jobs/" + id);
   expect_problem(answer, 500, "storage_failed");
@@ -92,7 +92,7 @@ TEST_F(Damage, ThatComesLaterIsSeenByReadinessAndToldToClientsWithoutItsReason) 
 
 TEST_F(Damage, TheLogHasTheReasonThatClientsAreNotTold) {
   const std::string started = start_and_hear();
-  SqliteDatabase(store()).run("ALTER TABLE jobs RENAME TO away");
+  database::SqliteDatabase(store()).run("ALTER TABLE jobs RENAME TO away");
   testing::internal::CaptureStderr();
   const auto answer = client().Get("/v1/jobs");
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("no such table"));
@@ -165,10 +165,10 @@ TEST_F(Damage, ARowThatCannotBeReadIsSetAsideAndNamedAndTheOthersGoOn) {
     const std::string waiting = submit("?resolution=64");
     const std::string whole = submit("?resolution=128");
     stop();
-    SqliteDatabase(store()).run(("UPDATE jobs SET " + std::string(damage) + " WHERE id IN ('" +
-                                 done + "', '" + waiting +
-                                 "'); UPDATE stored SET bytes = -5000000000")
-                                    .c_str());
+    database::SqliteDatabase(store()).run(("UPDATE jobs SET " + std::string(damage) +
+                                           " WHERE id IN ('" + done + "', '" + waiting +
+                                           "'); UPDATE stored SET bytes = -5000000000")
+                                              .c_str());
     EXPECT_THAT(start_and_hear(), AllOf(HasSubstr(done), HasSubstr(waiting))) << damage;
     const bool has_ended =
         client().Delete("/v1/jobs/" + ahead)->status == 204;  // on a slow machine
@@ -192,7 +192,7 @@ TEST_F(Damage, ARowDamagedWhileItWaitsIsPassedOver) {
   await_state(ahead, "running");
   const std::string waiting = submit("?resolution=64");
   const std::string whole = submit("?resolution=128");
-  SqliteDatabase(store()).run(
+  database::SqliteDatabase(store()).run(
       ("UPDATE jobs SET options = '{' WHERE id = '" + waiting + "'").c_str());
   client().Delete("/v1/jobs/" + ahead);
   await_state(whole, "succeeded");
@@ -206,7 +206,7 @@ TEST_F(Damage, AnIdThatIsAPathTakesNothingWithIt) {
   stop();
   const fs::path outside = dir_.path() / "outside";
   write_file(outside, "x");
-  SqliteDatabase database(store());
+  database::SqliteDatabase database(store());
   for (const char* path : {"", ".", "..", "../outside"}) {
     database.run(("INSERT INTO jobs (id, state, created_ms, synchronous, options, notes, sha256,"
                   " bytes, buffers) VALUES ('" +
@@ -227,10 +227,10 @@ class Lost : public testing::Test {
   [[nodiscard]] bool has(const std::string& name) const {
     return fs::exists(dir_.path() / "lost" / name);
   }
-  static FolderFate unknown(const std::string&) { return FolderFate::unknown; }
+  static blobs::FolderFate unknown(const std::string&) { return blobs::FolderFate::unknown; }
 
   const TempDir dir_;
-  BlobStore blobs_{dir_.path()};
+  blobs::BlobStore blobs_{dir_.path()};
 };
 
 TEST_F(Lost, IsKeptForItsTimeAndNoLonger) {
@@ -249,7 +249,7 @@ TEST_F(Lost, IsKeptForItsTimeAndNoLonger) {
 TEST_F(Lost, CountsAfterARestartAndGoesFirst) {
   make("j_1", 10);
   static_cast<void>(blobs_.sweep(unknown, 5000));
-  BlobStore next(dir_.path());
+  blobs::BlobStore next(dir_.path());
   EXPECT_EQ(next.sweep(unknown, 6000).returned, 0);
   EXPECT_EQ(next.lost().bytes(), 10);
   EXPECT_TRUE(next.lost().give_up_first());
@@ -259,7 +259,7 @@ TEST_F(Lost, CountsAfterARestartAndGoesFirst) {
 
 TEST_F(Lost, GoesWhenTheDiskIsFull) {
   for (const char* name : {"j_1", "j_2"}) make(name, 10);
-  BlobStore full(dir_.path(), {.max_bytes = 0, .min_free_bytes = std::int64_t{1} << 60});
+  blobs::BlobStore full(dir_.path(), {.max_bytes = 0, .min_free_bytes = std::int64_t{1} << 60});
   static_cast<void>(full.sweep(unknown, 5000));
   full.room().on_shortage({.evict =
                                [] {

@@ -9,10 +9,10 @@
 
 #include "core/base/error.hpp"
 #include "server/base/identity.hpp"
-#include "server/store/blob_store.hpp"
-#include "server/store/digests.hpp"
+#include "server/blobs/blob_store.hpp"
+#include "server/blobs/digests.hpp"
+#include "server/database/sqlite_database.hpp"
 #include "server/store/job_store.hpp"
-#include "server/store/sqlite_database.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
 
@@ -47,11 +47,11 @@ class Durability : public testing::Test {
   std::filesystem::path path() const { return dir_.path() / "jobs.sqlite"; }
 
   /// A job with a document and a result, sealed.
-  void add_job(BlobStore& blobs, const std::string& id) const {
+  void add_job(blobs::BlobStore& blobs, const std::string& id) const {
     const std::filesystem::path folder = blobs.begin_upload("u");
-    write_file(folder / kDocumentFile, "v 0 0 0");
+    write_file(folder / blobs::kDocumentFile, "v 0 0 0");
     blobs.keep_upload("u", id);
-    blobs.write_unsealed(id, 1, kReportFile, "{}");
+    blobs.write_unsealed(id, 1, blobs::kReportFile, "{}");
     blobs.seal(id, 1);
   }
 
@@ -62,7 +62,7 @@ class Durability : public testing::Test {
 
 TEST_F(Durability, AFileOfTheFirstVersionIsBroughtToThisOne) {
   std::filesystem::create_directories(dir_.path());
-  SqliteDatabase(path()).run(kVersion1);
+  database::SqliteDatabase(path()).run(kVersion1);
   for (int opening = 0; opening < 2; ++opening) {
     JobStore store(path());
     const JobRecord waiting = *store.find("j_1");
@@ -80,13 +80,13 @@ TEST_F(Durability, AFileOfTheFirstVersionIsBroughtToThisOne) {
 }
 
 TEST_F(Durability, ADamagedFileIsNeverHandedOut) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
-  EXPECT_EQ(blobs.read("j_1", kDocumentFile), "v 0 0 0");
-  EXPECT_EQ(blobs.digest("j_1", kReportFile), sha256("{}"));
-  damage(blobs.path("j_1", kDocumentFile));
-  damage(blobs.path("j_1", kReportFile));
-  for (const std::string_view file : {kDocumentFile, kReportFile}) {
+  EXPECT_EQ(blobs.read("j_1", blobs::kDocumentFile), "v 0 0 0");
+  EXPECT_EQ(blobs.digest("j_1", blobs::kReportFile), sha256("{}"));
+  damage(blobs.path("j_1", blobs::kDocumentFile));
+  damage(blobs.path("j_1", blobs::kReportFile));
+  for (const std::string_view file : {blobs::kDocumentFile, blobs::kReportFile}) {
     EXPECT_EQ(error_of([&] { static_cast<void>(blobs.open("j_1", file)); }).code(),
               ErrorCode::storage_corrupt)
         << file;
@@ -94,9 +94,9 @@ TEST_F(Durability, ADamagedFileIsNeverHandedOut) {
 }
 
 TEST_F(Durability, APipeInThePlaceOfAFileHoldsNobody) {
-  BlobStore blobs(dir_.path(), {});
+  blobs::BlobStore blobs(dir_.path(), {});
   add_job(blobs, "j_1");
-  const std::filesystem::path file = blobs.path("j_1", kReportFile);
+  const std::filesystem::path file = blobs.path("j_1", blobs::kReportFile);
   std::filesystem::remove(file);
   ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
   EXPECT_EQ(error_of([&] { static_cast<void>(File::open(file)); }).code(),
@@ -104,61 +104,62 @@ TEST_F(Durability, APipeInThePlaceOfAFileHoldsNobody) {
 }
 
 TEST_F(Durability, AnUploadDamagedBeforeItIsAJobIsNotTakenForWhatCame) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   const std::filesystem::path folder = blobs.begin_upload("u");
-  write_file(folder / kDocumentFile, "v 0 0 0");
-  damage(folder / kDocumentFile);
-  blobs.keep_upload("u", "j_1", {{std::string(kDocumentFile), sha256("v 0 0 0")}});
-  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }).code(),
+  write_file(folder / blobs::kDocumentFile, "v 0 0 0");
+  damage(folder / blobs::kDocumentFile);
+  blobs.keep_upload("u", "j_1", {{std::string(blobs::kDocumentFile), sha256("v 0 0 0")}});
+  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", blobs::kDocumentFile)); }).code(),
             ErrorCode::storage_corrupt);
 }
 
 TEST_F(Durability, SealingDoesNotPassOverADamagedInput) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
-  damage(blobs.path("j_1", kDocumentFile));
-  blobs.write_unsealed("j_1", 1, kReportFile, "{\"attempt\": 2}");
+  damage(blobs.path("j_1", blobs::kDocumentFile));
+  blobs.write_unsealed("j_1", 1, blobs::kReportFile, "{\"attempt\": 2}");
   blobs.seal("j_1", 1);
-  EXPECT_EQ(blobs.read("j_1", kReportFile), "{\"attempt\": 2}");
-  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kDocumentFile)); }).code(),
+  EXPECT_EQ(blobs.read("j_1", blobs::kReportFile), "{\"attempt\": 2}");
+  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", blobs::kDocumentFile)); }).code(),
             ErrorCode::storage_corrupt);
 }
 
 TEST_F(Durability, SharedResultsOutliveTheJobTheyCameFrom) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
-  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  write_file(blobs.begin_upload("u") / blobs::kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", "j_2");
   EXPECT_TRUE(blobs.adopt("j_2", "j_1"));
   blobs.remove("j_1");
-  EXPECT_EQ(blobs.read("j_2", kReportFile), "{}");
+  EXPECT_EQ(blobs.read("j_2", blobs::kReportFile), "{}");
   EXPECT_FALSE(blobs.adopt("j_2", "j_1"));
 }
 
 TEST_F(Durability, ResultsThatAreNotWholeAreGivenToNobody) {
-  for (const std::string_view file : {kReportFile, kTotalsFile, kUvFile, kDigestsFile}) {
-    BlobStore blobs(dir_.path());
+  for (const std::string_view file :
+       {blobs::kReportFile, blobs::kTotalsFile, blobs::kUvFile, blobs::kDigestsFile}) {
+    blobs::BlobStore blobs(dir_.path());
     add_job(blobs, "j_1");
-    blobs.write_unsealed("j_1", 1, kTotalsFile, "{}");
-    blobs.write_unsealed("j_1", 1, kUvFile, "uv");
+    blobs.write_unsealed("j_1", 1, blobs::kTotalsFile, "{}");
+    blobs.write_unsealed("j_1", 1, blobs::kUvFile, "uv");
     blobs.seal("j_1", 1);
-    write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+    write_file(blobs.begin_upload("u") / blobs::kDocumentFile, "v 0 0 0");
     blobs.keep_upload("u", "j_2");
     damage(blobs.path("j_1", file));
     EXPECT_FALSE(blobs.adopt("j_2", "j_1")) << file;
-    for (const std::string_view given : {kReportFile, kTotalsFile, kUvFile})
+    for (const std::string_view given : {blobs::kReportFile, blobs::kTotalsFile, blobs::kUvFile})
       EXPECT_FALSE(std::filesystem::exists(blobs.path("j_2", given))) << given;
-    EXPECT_EQ(blobs.read("j_2", kDocumentFile), "v 0 0 0");
+    EXPECT_EQ(blobs.read("j_2", blobs::kDocumentFile), "v 0 0 0");
     blobs.remove("j_1");
     blobs.remove("j_2");
   }
 }
 
 TEST_F(Durability, AFileThatWasMadeButNotNotedIsNotGivenToAnother) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
   blobs.write_unsealed("j_1", 1, "uv.bin.layout.area.svg", "<svg");
-  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  write_file(blobs.begin_upload("u") / blobs::kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", "j_2");
   EXPECT_FALSE(blobs.adopt("j_2", "j_1"));
   ASSERT_TRUE(blobs.try_keep("j_1", "uv.bin.layout.area.svg", "<svg"));
@@ -167,35 +168,35 @@ TEST_F(Durability, AFileThatWasMadeButNotNotedIsNotGivenToAnother) {
 }
 
 TEST_F(Durability, WithoutItsDigestAFileIsNotHandedOut) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   add_job(blobs, "j_1");
   const auto expect_refused = [&](std::string_view why) {
-    for (const std::string_view file : {kDocumentFile, kReportFile}) {
+    for (const std::string_view file : {blobs::kDocumentFile, blobs::kReportFile}) {
       EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", file)); }).code(),
                 ErrorCode::storage_corrupt)
           << file << why;
     }
   };
-  write_file(blobs.path("j_1", kDigestsFile), "");
+  write_file(blobs.path("j_1", blobs::kDigestsFile), "");
   expect_refused(" whose digests are empty");
-  std::filesystem::remove(blobs.path("j_1", kDigestsFile));
+  std::filesystem::remove(blobs.path("j_1", blobs::kDigestsFile));
   expect_refused(" whose digests are gone");
-  const BlobStore reopened(dir_.path());
+  const blobs::BlobStore reopened(dir_.path());
   expect_refused(" whose digests are gone, after another start");
 }
 
 TEST_F(Durability, WhatTheFirstVersionStoredIsNotedOnce) {
   make_directories(dir_.path() / "blobs" / "j_1");
-  write_file(dir_.path() / "blobs" / "j_1" / kReportFile, "{}");
-  const BlobStore blobs(dir_.path());
-  EXPECT_EQ(blobs.read("j_1", kReportFile), "{}");
-  damage(blobs.path("j_1", kReportFile));
-  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", kReportFile)); }).code(),
+  write_file(dir_.path() / "blobs" / "j_1" / blobs::kReportFile, "{}");
+  const blobs::BlobStore blobs(dir_.path());
+  EXPECT_EQ(blobs.read("j_1", blobs::kReportFile), "{}");
+  damage(blobs.path("j_1", blobs::kReportFile));
+  EXPECT_EQ(error_of([&] { static_cast<void>(blobs.read("j_1", blobs::kReportFile)); }).code(),
             ErrorCode::storage_corrupt);
 }
 
 TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
-  BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
+  blobs::BlobStore blobs(dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0});
   std::vector<std::string> evicted;
   EXPECT_EQ(error_of([&] { blobs.room().take_for_upload("u", 751, 751); }).code(),
             ErrorCode::storage_full);
@@ -218,17 +219,17 @@ TEST_F(Durability, WhatHasNoRoomIsRefusedAndTheOldestResultsGoFirst) {
 
 TEST_F(Durability, UploadsLeaveTheDiskSomeRoomAndResultsHalfOfIt) {
   const auto free = static_cast<std::int64_t>(std::filesystem::space(dir_.path()).available);
-  const auto upload = [](BlobStore& blobs) { blobs.room().take_for_upload("u", 1, 1); };
-  const auto result = [](BlobStore& blobs) { blobs.room().take("j_1", 1); };
-  BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = free / 2 * 3});
+  const auto upload = [](blobs::BlobStore& blobs) { blobs.room().take_for_upload("u", 1, 1); };
+  const auto result = [](blobs::BlobStore& blobs) { blobs.room().take("j_1", 1); };
+  blobs::BlobStore blobs(dir_.path(), {.max_bytes = 0, .min_free_bytes = free / 2 * 3});
   EXPECT_EQ(error_of([&] { upload(blobs); }).code(), ErrorCode::storage_full);
   EXPECT_NO_THROW(result(blobs));
-  BlobStore fuller(dir_.path(), {.max_bytes = 0, .min_free_bytes = 3 * free});
+  blobs::BlobStore fuller(dir_.path(), {.max_bytes = 0, .min_free_bytes = 3 * free});
   EXPECT_EQ(error_of([&] { result(fuller); }).code(), ErrorCode::storage_full);
 }
 
 TEST_F(Durability, WhatSaysThatSomethingIsRemovedHasRoomOnAFullDiskOnce) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   int times = 0;
   const auto write = [&] {
     if (++times % 2 == 1) throw Error(ErrorCode::storage_full, "");
@@ -236,7 +237,7 @@ TEST_F(Durability, WhatSaysThatSomethingIsRemovedHasRoomOnAFullDiskOnce) {
   EXPECT_EQ(error_of([&] { blobs.room().free_by(write); }).code(), ErrorCode::storage_full);
   times = 0;
   blobs.room().make_reserve();
-  EXPECT_EQ(std::filesystem::file_size(dir_.path() / "reserve"), kReserveBytes);
+  EXPECT_EQ(std::filesystem::file_size(dir_.path() / "reserve"), blobs::kReserveBytes);
   EXPECT_NO_THROW(blobs.room().free_by(write));
   EXPECT_EQ(times, 2);
   EXPECT_FALSE(std::filesystem::exists(dir_.path() / "reserve"));

@@ -5,8 +5,8 @@
 
 #include <thread>
 
-#include "server/store/database_address.hpp"
-#include "server/store/schema.hpp"
+#include "server/database/database_address.hpp"
+#include "server/database/schema.hpp"
 #include "tests/server/temp_dir.hpp"
 #include "tests/server/test_database.hpp"
 
@@ -16,22 +16,23 @@ namespace {
 class EventChannels : public testing::Test {
  protected:
   /// Reads of whole tables by now, that sessions have told; -1: they have told nothing yet.
-  static std::int64_t whole_reads(const Database& database) {
-    return number_of(database,
-                     "SELECT CASE WHEN SUM(COALESCE(idx_scan, 0)) = 0 THEN -1 ELSE SUM(seq_scan)"
-                     " END::bigint FROM pg_stat_user_tables WHERE schemaname = current_schema()"
-                     " AND relname IN ('events', 'jobs')");
+  static std::int64_t whole_reads(const database::Database& database) {
+    return database::number_of(
+        database,
+        "SELECT CASE WHEN SUM(COALESCE(idx_scan, 0)) = 0 THEN -1 ELSE SUM(seq_scan)"
+        " END::bigint FROM pg_stat_user_tables WHERE schemaname = current_schema()"
+        " AND relname IN ('events', 'jobs')");
   }
 
   TempDir dir_;
-  const PostgresAddress address_ = postgres_of(dir_.path());
+  const database::PostgresAddress address_ = postgres_of(dir_.path());
 };
 
 /// A plan that was made while the tables were empty is kept.
 TEST_F(EventChannels, ReadNoTableWhole) {
   if (address_.url.empty()) return;
-  const auto database = DatabaseAddress(address_).open();
-  migrate(*database);
+  const auto database = database::DatabaseAddress(address_).open();
+  database::migrate(*database);
   EventChannel channel(address_);
   const auto read = [&] {
     channel.after({{"j_1", 0}, {"j_2", 0}});
@@ -59,8 +60,8 @@ TEST_F(EventChannels, ReadNoTableWhole) {
 
 TEST_F(EventChannels, ReadWhatFollowsOfEachJobInItsOrder) {
   if (address_.url.empty()) return;
-  const auto database = DatabaseAddress(address_).open();
-  migrate(*database);
+  const auto database = database::DatabaseAddress(address_).open();
+  database::migrate(*database);
   EventChannel channel(address_);
   std::vector<EventRow> events;
   for (const char* job : {"j_b", "j_a", "j_c"})

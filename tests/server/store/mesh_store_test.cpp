@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "server/base/files.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/sweeper.hpp"
 #include "tests/server/temp_dir.hpp"
@@ -27,7 +27,7 @@ MeshRecord some_mesh(const std::string& id, std::int64_t kept_since_ms) {
 class StoreOfMeshes : public testing::Test {
  protected:
   void put(const std::string& id, std::int64_t kept_since_ms) {
-    write_file(blobs_.begin_upload(id) / kDocumentFile, "v");
+    write_file(blobs_.begin_upload(id) / blobs::kDocumentFile, "v");
     blobs_.keep_upload(id, id);
     meshes_.put(some_mesh(id, kept_since_ms));
   }
@@ -45,16 +45,16 @@ class StoreOfMeshes : public testing::Test {
                                    .finished_ms = finished_ms});
   }
   bool is_there(const std::string& id) const {
-    return std::filesystem::exists(blobs_.path(id, kDocumentFile));
+    return std::filesystem::exists(blobs_.path(id, blobs::kDocumentFile));
   }
 
   static constexpr const char* kOne = "m_11111111111111111111111111111111";
   static constexpr const char* kTwo = "m_22222222222222222222222222222222";
   TempDir dir_;
-  const DatabaseAddress database_ = database_in(dir_.path());
+  const database::DatabaseAddress database_ = database_in(dir_.path());
   JobStore jobs_{database_};
   MeshStore meshes_{database_};
-  BlobStore blobs_{dir_.path()};
+  blobs::BlobStore blobs_{dir_.path()};
 };
 
 TEST_F(StoreOfMeshes, TellsAMeshThatIsNotThereFromOneThatCannotBeShared) {

@@ -10,7 +10,7 @@
 #include "core/base/error.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
-#include "server/store/blob_store.hpp"
+#include "server/blobs/blob_store.hpp"
 #include "tests/api/error_of.hpp"
 #include "tests/server/temp_dir.hpp"
 
@@ -22,11 +22,12 @@ namespace fs = std::filesystem;
 class SharedDirectory : public testing::Test {
  protected:
   void upload(const std::string& job) {
-    write_file(one_.begin_upload(job) / kDocumentFile, "v 0 0 0\n");
+    write_file(one_.begin_upload(job) / blobs::kDocumentFile, "v 0 0 0\n");
     one_.keep_upload(job, job);
   }
-  static void work(BlobStore& node, const std::string& job, int attempt, const std::string& text) {
-    node.write_unsealed(job, attempt, kReportFile, text);
+  static void work(blobs::BlobStore& node, const std::string& job, int attempt,
+                   const std::string& text) {
+    node.write_unsealed(job, attempt, blobs::kReportFile, text);
     node.write_unsealed(job, attempt, "result.glb", "glb of " + text);
     node.seal(job, attempt);
   }
@@ -42,30 +43,30 @@ class SharedDirectory : public testing::Test {
   }
 
   TempDir dir_;
-  BlobStore one_{dir_.path(), {}, Sharing::by_nodes};
-  BlobStore two_{dir_.path(), {}, Sharing::by_nodes};
+  blobs::BlobStore one_{dir_.path(), {}, blobs::Sharing::by_nodes};
+  blobs::BlobStore two_{dir_.path(), {}, blobs::Sharing::by_nodes};
 };
 
 TEST_F(SharedDirectory, ResultsAreThoseOfTheAttemptThatIsPublished) {
   upload("j_1");
   work(one_, "j_1", 1, "first");
-  EXPECT_FALSE(two_.has("j_1", kReportFile));
+  EXPECT_FALSE(two_.has("j_1", blobs::kReportFile));
   work(two_, "j_1", 2, "second");
   two_.publish("j_1", 2);
-  EXPECT_EQ(one_.read("j_1", kReportFile), "second");
+  EXPECT_EQ(one_.read("j_1", blobs::kReportFile), "second");
   one_.drop_attempt("j_1", 1);
   EXPECT_EQ(one_.read("j_1", "result.glb"), "glb of second");
-  EXPECT_EQ(one_.read("j_1", kDocumentFile), "v 0 0 0\n") << "inputs keep their digests";
+  EXPECT_EQ(one_.read("j_1", blobs::kDocumentFile), "v 0 0 0\n") << "inputs keep their digests";
   EXPECT_EQ(unfinished(), 0U);
 }
 
 TEST_F(SharedDirectory, ALateNodeChangesNothing) {
   upload("j_1");
-  one_.write_unsealed("j_1", 1, kReportFile, "begun");
+  one_.write_unsealed("j_1", 1, blobs::kReportFile, "begun");
   work(two_, "j_1", 2, "second");
   two_.publish("j_1", 2);
   work(one_, "j_1", 1, "late");
-  EXPECT_EQ(two_.read("j_1", kReportFile), "second");
+  EXPECT_EQ(two_.read("j_1", blobs::kReportFile), "second");
 }
 
 TEST_F(SharedDirectory, PublishingGoesOnWhereAnotherNodeDied) {
@@ -75,7 +76,7 @@ TEST_F(SharedDirectory, PublishingGoesOnWhereAnotherNodeDied) {
   fs::rename(from / "result.glb", dir_.path() / "blobs" / "j_1" / "result.glb");
   two_.publish("j_1", 1);
   EXPECT_EQ(two_.read("j_1", "result.glb"), "glb of report");
-  EXPECT_EQ(two_.read("j_1", kReportFile), "report");
+  EXPECT_EQ(two_.read("j_1", blobs::kReportFile), "report");
   EXPECT_NO_THROW(one_.publish("j_1", 1)) << "done already";
   EXPECT_EQ(unfinished(), 0U);
 }
@@ -86,7 +87,7 @@ TEST_F(SharedDirectory, ManyNodesPublishAndNoteAtATime) {
   std::vector<std::jthread> threads;
   for (int k = 0; k < 8; ++k)
     threads.emplace_back([this, k] {
-      BlobStore node(dir_.path(), {}, Sharing::by_nodes);
+      blobs::BlobStore node(dir_.path(), {}, blobs::Sharing::by_nodes);
       node.publish("j_1", 1);
       for (int file = 0; file < 5; ++file) {
         const std::string name = "picture." + std::to_string(k) + "." + std::to_string(file);
@@ -99,7 +100,7 @@ TEST_F(SharedDirectory, ManyNodesPublishAndNoteAtATime) {
       const std::string name = "picture." + std::to_string(k) + "." + std::to_string(file);
       EXPECT_EQ(one_.read("j_1", name), name) << "no digest is lost";
     }
-  EXPECT_EQ(one_.read("j_1", kReportFile), "report");
+  EXPECT_EQ(one_.read("j_1", blobs::kReportFile), "report");
 }
 
 TEST_F(SharedDirectory, ManyNodesBeginAtATime) {
@@ -108,7 +109,7 @@ TEST_F(SharedDirectory, ManyNodesBeginAtATime) {
     threads.emplace_back([this] {
       for (int round = 0; round < 20; ++round) {
         fs::remove(dir_.path() / "digests-noted");
-        EXPECT_NO_THROW(BlobStore(dir_.path(), {}, Sharing::by_nodes));
+        EXPECT_NO_THROW(blobs::BlobStore(dir_.path(), {}, blobs::Sharing::by_nodes));
       }
     });
 }
@@ -120,10 +121,10 @@ TEST_F(SharedDirectory, ASweepPublishesWhatADeadNodeHasEnded) {
   static_cast<void>(two_.sweep(
       [this](const std::string& job) {
         two_.publish(job, 1);  // as JobStore::on_found() does
-        return FolderFate::kept;
+        return blobs::FolderFate::kept;
       },
       1));
-  EXPECT_EQ(two_.read("j_1", kReportFile), "report");
+  EXPECT_EQ(two_.read("j_1", blobs::kReportFile), "report");
   EXPECT_EQ(unfinished(), 0U);
 }
 
@@ -133,7 +134,7 @@ TEST_F(SharedDirectory, ASweepLeavesAloneWhatANodeMayWorkOn) {
   one_.begin_upload("j_coming");
   work(one_, "j_working", 1, "report");
   age(dir_.path() / "blobs" / "j_old", std::chrono::hours(2));
-  const auto nobody_knows = [](const std::string&) { return FolderFate::unknown; };
+  const auto nobody_knows = [](const std::string&) { return blobs::FolderFate::unknown; };
   EXPECT_EQ(two_.sweep(nobody_knows, 1).lost, std::vector<std::string>{"j_old"});
   EXPECT_TRUE(two_.holds("j_new"));
   EXPECT_EQ(unfinished(), 2U);

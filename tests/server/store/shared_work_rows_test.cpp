@@ -34,7 +34,7 @@ class SharedWorkRows : public testing::Test {
   }
 
   TempDir dir_;
-  const DatabaseAddress database_ = database_in(dir_.path());
+  const database::DatabaseAddress database_ = database_in(dir_.path());
   std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(database_);
   int count_ = 0;
 };

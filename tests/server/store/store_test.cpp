@@ -45,7 +45,7 @@ class Store : public testing::Test {
   }
 
   TempDir dir_;
-  const DatabaseAddress database_ = database_in(dir_.path());
+  const database::DatabaseAddress database_ = database_in(dir_.path());
   std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(database_);
 };
 
@@ -209,7 +209,7 @@ TEST_F(Store, RemembersARequestToCancelOverAReopening) {
 
 TEST_F(Store, RefusesTablesOfAnotherSchema) {
   store_.reset();
-  const std::shared_ptr<Database> newer = database_.open();
+  const std::shared_ptr<database::Database> newer = database_.open();
   newer->transact([&] { newer->set_version(99); });
   EXPECT_THROW(JobStore{database_}, Error);
 }
@@ -222,13 +222,13 @@ TEST(AFileThatIsNoDatabase, IsRefused) {
 }
 
 TEST_F(Store, FilesExpireFirstAndTheJobAfterAsLongAgain) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   store_->insert(some_job("j_1"));
   blobs.begin_upload("j_1");
   blobs.keep_upload("j_1", "j_1");
   store_->finish(*store_->take(""), succeeded(1000));
-  const auto file = blobs.path("j_1", kReportFile);
-  blobs.write_unsealed("j_1", 1, kReportFile, "{}");
+  const auto file = blobs.path("j_1", blobs::kReportFile);
+  blobs.write_unsealed("j_1", 1, blobs::kReportFile, "{}");
 
   sweep(*store_, blobs, 10'999, std::chrono::seconds(10));
   EXPECT_TRUE(std::filesystem::exists(file));
@@ -241,28 +241,30 @@ TEST_F(Store, FilesExpireFirstAndTheJobAfterAsLongAgain) {
 }
 
 TEST_F(Store, WhatACrashLeavesBehindIsSwept) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   for (const char* job : {"j_known", "j_orphan"}) {
     blobs.begin_upload(job);
     blobs.keep_upload(job, job);
-    blobs.write_unsealed(job, 1, kDocumentFile, "v");
+    blobs.write_unsealed(job, 1, blobs::kDocumentFile, "v");
   }
   blobs.begin_upload("j_upload");
   const auto part = blobs.path("j_known", "result.glb.part");
   File::create(part).append("half");
-  const Swept swept = blobs.sweep(
-      [](const std::string& job) { return job == "j_known" ? FolderFate::kept : FolderFate::gone; },
+  const blobs::Swept swept = blobs.sweep(
+      [](const std::string& job) {
+        return job == "j_known" ? blobs::FolderFate::kept : blobs::FolderFate::gone;
+      },
       0);
   EXPECT_EQ(swept.removed, 1);
   EXPECT_FALSE(std::filesystem::exists(part));
-  EXPECT_TRUE(std::filesystem::exists(blobs.path("j_known", kDocumentFile)));
+  EXPECT_TRUE(std::filesystem::exists(blobs.path("j_known", blobs::kDocumentFile)));
   EXPECT_FALSE(std::filesystem::exists(blobs.path("j_orphan", "")));
   EXPECT_TRUE(std::filesystem::is_empty(dir_.path() / "incoming"));
 }
 
 TEST_F(Store, TheEndOfAJobIsTellableBeforeItIsTold) {
   store_->insert(some_job("j_1"));
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   blobs.begin_upload("j_1");
   blobs.keep_upload("j_1", "j_1");
   jobs::EventFeed events;

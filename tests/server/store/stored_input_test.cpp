@@ -65,7 +65,7 @@ TEST_F(LongOptions, ThatAreDamagedFailTheJobRatherThanHoldNothing) {
   const std::string ahead = submit_endless();
   await_state(ahead, "running");
   const std::string id = accepted(long_options(kHeld, kVertices - 1));
-  std::filesystem::remove(dir_.path() / "blobs" / id / kOptionsFile);
+  std::filesystem::remove(dir_.path() / "blobs" / id / blobs::kOptionsFile);
   client().Delete("/v1/jobs/" + ahead);
   await_state(id, "failed");
   EXPECT_THAT(job(id).at("problem").at("code"),

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "server/store/blob_store.hpp"
-#include "server/store/digests.hpp"
+#include "server/blobs/blob_store.hpp"
+#include "server/blobs/digests.hpp"
 #include "server/uploads/job_input.hpp"
 #include "tests/server/temp_dir.hpp"
 
@@ -77,7 +77,7 @@ extern "C" int fsync(int descriptor) {
 
 extern "C" int rename(const char* from, const char* to) {
   const std::filesystem::path path(to);
-  if (path.filename() == unwrapd::server::store::kDigestsFile)
+  if (path.filename() == unwrapd::server::blobs::kDigestsFile)
     for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
       if (entry.path() != path && !is_synced(entry.path())) noted_early.push_back(entry.path());
   return ::renameat(AT_FDCWD, from, AT_FDCWD, to);
@@ -116,39 +116,39 @@ class Synchronising : public testing::Test {
 
 TEST_F(Synchronising, AnUploadIsOnTheDiskBeforeItIsAJob) {
   for (const bool in_parts : {false, true}) {
-    BlobStore blobs(dir_.path());
+    blobs::BlobStore blobs(dir_.path());
     const UploadFolder folder{.path = blobs.begin_upload("u")};
     TextBody body;
     const uploads::Upload upload =
         in_parts ? uploads::receive_parts(body, folder) : uploads::receive_asset(body, folder);
     const std::string job = in_parts ? "j_parts" : "j_whole";
     blobs.keep_upload("u", job, digests_of(upload.input));
-    EXPECT_EQ(blobs.read(job, kDocumentFile), "v 0 0 0");
-    EXPECT_EQ(blobs.digest(job, kDocumentFile), upload.input.sha256);
+    EXPECT_EQ(blobs.read(job, blobs::kDocumentFile), "v 0 0 0");
+    EXPECT_EQ(blobs.digest(job, blobs::kDocumentFile), upload.input.sha256);
     expect_synced(blobs.path(job, ""));
     EXPECT_TRUE(is_synced(dir_.path() / "blobs"));
   }
 }
 
 TEST_F(Synchronising, ResultsAreOnTheDiskWhenTheyAreSealed) {
-  BlobStore blobs(dir_.path());
-  write_file(blobs.begin_upload("u") / kDocumentFile, "v 0 0 0");
+  blobs::BlobStore blobs(dir_.path());
+  write_file(blobs.begin_upload("u") / blobs::kDocumentFile, "v 0 0 0");
   blobs.keep_upload("u", "j_1");
-  blobs.write_unsealed("j_1", 1, kReportFile, "{}");
+  blobs.write_unsealed("j_1", 1, blobs::kReportFile, "{}");
   for (const char* format : {"gltf", "obj", "json", "stl", "ply"})  // more than are synced at once
-    blobs.write_unsealed("j_1", 1, result_file(format), format);
-  blobs.write_unsealed("j_1", 1, result_file("glb"), std::string(3'000'000, 'x'));
-  EXPECT_FALSE(is_synced(blobs.path("j_1", kReportFile)));  // or the next line tells nothing
+    blobs.write_unsealed("j_1", 1, blobs::result_file(format), format);
+  blobs.write_unsealed("j_1", 1, blobs::result_file("glb"), std::string(3'000'000, 'x'));
+  EXPECT_FALSE(is_synced(blobs.path("j_1", blobs::kReportFile)));  // or the next line tells nothing
   is_digests_turn = true;  // who does not wait for the others gives it its name too early
   blobs.seal("j_1", 1);
   expect_synced(blobs.path("j_1", ""));
-  EXPECT_EQ(read_digests(blobs.path("j_1", "")).size(), 8U);
+  EXPECT_EQ(blobs::read_digests(blobs.path("j_1", "")).size(), 8U);
 }
 
 TEST_F(Synchronising, AFileWrittenByItselfIsOnTheDiskAtOnce) {
-  BlobStore blobs(dir_.path());
+  blobs::BlobStore blobs(dir_.path());
   std::filesystem::create_directories(blobs.path("j_1", ""));
-  ASSERT_TRUE(blobs.try_keep("j_1", std::string(kReportFile), "{}"));
+  ASSERT_TRUE(blobs.try_keep("j_1", std::string(blobs::kReportFile), "{}"));
   expect_synced(blobs.path("j_1", ""));
 }
 

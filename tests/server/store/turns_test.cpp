@@ -34,7 +34,7 @@ class Turns : public testing::Test {
   std::string next() { return store_->next_owner(kMeanMs).value_or("nobody"); }
 
   TempDir dir_;
-  const DatabaseAddress database_ = database_in(dir_.path());
+  const database::DatabaseAddress database_ = database_in(dir_.path());
   std::unique_ptr<JobStore> store_ = std::make_unique<JobStore>(database_);
   std::int64_t count_ = 0;
 };
@@ -158,7 +158,7 @@ TEST_F(Turns, DamagedCountsAreMendedAtTheStart) {
   for (const char* owner : {"a", "b", "b"}) add(owner);
   start("b");
   store_.reset();
-  const std::shared_ptr<Database> other = database_.open();
+  const std::shared_ptr<database::Database> other = database_.open();
   other->transact([&] { other->run("UPDATE shares SET waiting = 7, running = 0"); });
   store_ = std::make_unique<JobStore>(database_);
   EXPECT_EQ(store_->counts().waiting, 2);

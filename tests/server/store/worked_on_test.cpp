@@ -18,7 +18,7 @@ class WorkedOn : public testing::Test {
   }
 
   void open(std::optional<JobStore>& store, const std::string& id) {
-    PostgresAddress address = address_;
+    database::PostgresAddress address = address_;
     address.node = id;
     store.emplace(address, read_clocks, Node{.id = id, .is_shared = true, .keeps_work = true});
   }
@@ -38,7 +38,7 @@ class WorkedOn : public testing::Test {
   }
 
   TempDir dir_;
-  const PostgresAddress address_ = postgres_of(dir_.path());
+  const database::PostgresAddress address_ = postgres_of(dir_.path());
   std::optional<JobStore> one_, two_;
   int count_ = 0;
 };
@@ -70,7 +70,7 @@ TEST_F(WorkedOn, IsForgottenWithTheNodesMemoryAndAfterAnHour) {
   EXPECT_EQ(known(*one_), "both");
   one_->forget_own_work();
   EXPECT_EQ(known(*one_), "elsewhere");
-  const auto database = DatabaseAddress(address_).open();
+  const auto database = database::DatabaseAddress(address_).open();
   database->change(
       [&] { database->run("UPDATE worked_on SET noted = noted - INTERVAL '2 hours'"); });
   one_->forget_old_work();

@@ -47,7 +47,7 @@ class RoomOfAnUpload : public testing::Test {
 
   TempDir dir_;
   store::JobStore store_{database_in(dir_.path())};
-  store::DiskBudget disk_{dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0}};
+  blobs::DiskBudget disk_{dir_.path(), {.max_bytes = 1000, .min_free_bytes = 0}};
   store::QuotaReservations reservations_{store_};
   const UploadRooms rooms_{reservations_, disk_};
   bool evicted_ = false;
@@ -198,7 +198,7 @@ TEST_F(RoomOfAnUpload, CountsALongTextWhileItIsThere) {
     EXPECT_EQ(refusal([&] { text.append(piece); }), ErrorCode::storage_full);
   }
   EXPECT_EQ(disk_.used_bytes(), 0);
-  store::DiskBudget wide(dir_.path(), {.max_bytes = 200'000, .min_free_bytes = 0});
+  blobs::DiskBudget wide(dir_.path(), {.max_bytes = 200'000, .min_free_bytes = 0});
   const UploadRooms rooms{reservations_, wide};
   UploadBudget his(rooms, caller(150'000), "u", {});
   {

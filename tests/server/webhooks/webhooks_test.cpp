@@ -11,7 +11,7 @@ namespace {
 
 TEST(WebhooksDue, AreThoseWhoseTimeHasCome) {
   const TempDir dir;
-  const store::DatabaseAddress address = database_in(dir.path());
+  const database::DatabaseAddress address = database_in(dir.path());
   store::JobStore jobs(address);
   const Log log(LogLevel::off);
   Webhooks webhooks(address, "secret", {}, log, [&] { return jobs.now(); });
@@ -19,8 +19,8 @@ TEST(WebhooksDue, AreThoseWhoseTimeHasCome) {
   const auto database = address.open();
   const auto add = [&](const char* job, std::int64_t due_ms) {
     database->change([&] {
-      store::Statement(*database,
-                       "INSERT INTO deliveries (job, url, body, due_ms) VALUES (?, '', '', ?)")
+      database::Statement(*database,
+                          "INSERT INTO deliveries (job, url, body, due_ms) VALUES (?, '', '', ?)")
           .with(std::string(job), due_ms)
           .run();
     });
