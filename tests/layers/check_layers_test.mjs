@@ -20,6 +20,10 @@ test("rooms include the rooms before them only", () => {
   refuses("core/pack/pack.cpp", '"core/segment/segment.hpp"');
   refuses("core/unwrap.cpp", '"core/asset/asset.hpp"');
   refuses("core/figure/preview.cpp", '"core/solve/solve.hpp"');
+  refuses("core/segment/base/merge.cpp", '"core/segment/search/merge_search.hpp"');
+  refuses("core/segment/search/bisect.cpp", '"core/segment/segment.hpp"');
+  refuses("server/blobs/blob_store.cpp", '"server/database/database.hpp"');
+  refuses("server/database/schema.cpp", '"server/store/job_rows.hpp"');
   refuses("server/http/http.cpp", '"server/store/job_store.hpp"');
   refuses("server/store/job_store.cpp", '"server/http/http.hpp"');
   refuses("server/jobs/job_queue.cpp", '"server/routes/job_routes.hpp"');
@@ -54,6 +58,14 @@ test("a file opens the namespace of its room", () => {
   assert.equal(opening("core/pack/pack.cpp", "unwrapd").length, 1);
   assert.equal(opening("core/pack/pack.cpp", "unwrapd::packing").length, 1);
   assert.equal(opening("server/http/router.cpp", "unwrapd::server::store").length, 1);
+});
+
+test("a rounding to float and back stands in core/asset alone", () => {
+  for (const line of ["p.cast<float>().cast<double>()", "static_cast<double>(static_cast<float>(x))", "double{float{x}}"]) {
+    assert.equal(check("core/pack/pack.cpp", line).length, 1, line);
+    assert.deepEqual(check("core/asset/asset.cpp", line), []);
+  }
+  assert.deepEqual(check("core/pack/pack.cpp", "static_cast<float>(static_cast<double>(x))"), []);
 });
 
 test("a table that goes both ways is refused", () => {
