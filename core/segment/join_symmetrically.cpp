@@ -96,10 +96,10 @@ class SymmetricPartition {
     Partition partition{std::move(regions_), std::move(open_)};
     Segments segments{.regions = {},
                       .open = {},
-                      .excess = total_excess(partition.patches),
+                      .excess = total_excess(partition.regions),
                       .seam_length = search::seam_length(surface_, partition)};
     segments.open = std::move(partition.open);
-    for (MappedRegion& own : partition.patches) segments.regions.push_back(std::move(own.region));
+    for (MappedRegion& own : partition.regions) segments.regions.push_back(std::move(own.region));
     return segments;
   }
 
@@ -235,26 +235,26 @@ class SymmetricPartition {
 
   void join_with_image(Index a, Index b) {
     Joined both = join(regions_[a], regions_[b]);
-    if (!both.patch.is_sound) return;
-    const ExcessDistortion more = both.patch.excess - regions_[a].excess - regions_[b].excess;
+    if (!both.region.is_sound) return;
+    const ExcessDistortion more = both.region.excess - regions_[a].excess - regions_[b].excess;
     if (!is_allowed(both.slit, more)) return;
     regions_[b] = {};
-    replace(a, std::move(both.patch), both.slit, more);
+    replace(a, std::move(both.region), both.slit, more);
   }
 
   void join_pair(Index whole, Index a) {
     const Index b = a + 1;
     const Joined first = join(regions_[whole], regions_[a]);
-    if (!first.patch.is_sound) return;
-    Joined all = join(first.patch, regions_[b]);
-    if (!all.patch.is_sound) return;
+    if (!first.region.is_sound) return;
+    Joined all = join(first.region, regions_[b]);
+    if (!all.region.is_sound) return;
     const ExcessDistortion more =
-        all.patch.excess - regions_[whole].excess - regions_[a].excess - regions_[b].excess;
+        all.region.excess - regions_[whole].excess - regions_[a].excess - regions_[b].excess;
     std::vector<Index> slit = first.slit;
     slit.insert(slit.end(), all.slit.begin(), all.slit.end());
     if (!is_allowed(slit, more)) return;
     regions_[a] = regions_[b] = {};
-    replace(whole, std::move(all.patch), slit, more);
+    replace(whole, std::move(all.region), slit, more);
   }
 
   const SegmentationMesh& surface_;

@@ -3,7 +3,7 @@
 // surface, and is taken from the bound of the small one. What the charts that are then found come
 // to is measured, too; if that misses the bound, they are sought once more for a lower one.
 // Rejected: a fixed share of the bound for noise: too much for smooth surfaces, too little for
-// rough ones; measuring on the patches before they merge: that shows half of it.
+// rough ones; measuring on the regions before they merge: that shows half of it.
 //
 // For a looser bound the noise is measured at the first of its steps and the search goes on from
 // step to step (ADR 0039); what is then compared are the seams on the large surface.

@@ -34,10 +34,10 @@ const MergeSettings kWhateverDistortion{
 /// Merges further, whatever the distortion, to the allowed number of regions if maps allow it.
 Partition merge_to_limit(const MergeContext& context, Partition partition, Index most_regions,
                          Executor& executor) {
-  if (partition.patches.size() <= static_cast<std::size_t>(most_regions)) return partition;
+  if (partition.regions.size() <= static_cast<std::size_t>(most_regions)) return partition;
   MergeSettings settings = kWhateverDistortion;
   settings.enough = most_regions;
-  return merge_patches({context.surface, nullptr, nullptr, context.stop}, Joiner(context.surface),
+  return merge_regions({context.surface, nullptr, nullptr, context.stop}, Joiner(context.surface),
                        std::move(partition), settings, executor);
 }
 
@@ -55,14 +55,14 @@ SurfaceSegmentation::SurfaceSegmentation(const SegmentationMesh& surface, Segmen
       context_{surface, &progress_, nullptr, rules_.stop} {}
 
 Segments SurfaceSegmentation::first(double excess) {
-  patches_ = {search::over_segment(context_, excess, executor_),
-              std::vector<char>(surface_.length.size(), 0)};
+  partition_ = {search::over_segment(context_, excess, executor_),
+                std::vector<char>(surface_.length.size(), 0)};
   merge_across_kept_edges();
   stage_ = Stage::merge;
   const MergeSettings settings = settings_for(excess);
   if (rules_.is_quick) return merge_quickly(settings);
   search::MergeSearch& search =
-      search_.emplace(context_, patches_, settings,
+      search_.emplace(context_, partition_, settings,
                       search::SearchPlan{search_extent(rules_.effort), steps_}, executor_);
   competing_ = search.merge_greedily();
   search.search_neighbourhoods(competing_);
@@ -71,16 +71,16 @@ Segments SurfaceSegmentation::first(double excess) {
   return segments_of(best_.partition);
 }
 
-/// What this glues, no step of the search parts: steps begin from these patches, and the length of
+/// What this glues, no step of the search parts: steps begin from these regions, and the length of
 /// a kept edge is such that no cut along it is the cheaper one.
 void SurfaceSegmentation::merge_across_kept_edges() {
   if (surface_.kept.empty()) return;
-  const ExcessDistortion before = total_excess(patches_.patches);
+  const ExcessDistortion before = total_excess(partition_.regions);
   MergeSettings settings = kWhateverDistortion;
   settings.only_kept = true;
-  patches_ = merge_patches({surface_, nullptr, nullptr, context_.stop}, Joiner(surface_),
-                           std::move(patches_), settings, executor_);
-  forced_ = std::max(0.0, (total_excess(patches_.patches) - before).worst());
+  partition_ = merge_regions({surface_, nullptr, nullptr, context_.stop}, Joiner(surface_),
+                             std::move(partition_), settings, executor_);
+  forced_ = std::max(0.0, (total_excess(partition_.regions) - before).worst());
 }
 
 /// The cheapest result of all candidates.
@@ -124,17 +124,17 @@ Segments SurfaceSegmentation::merge_quickly(const MergeSettings& settings) {
   MergeSettings quick = settings;
   quick.distortion_weight = kQuickWeight;
   return segments_of(
-      merge_patches(context_, Joiner(surface_), std::move(patches_), quick, executor_));
+      merge_regions(context_, Joiner(surface_), std::move(partition_), quick, executor_));
 }
 
 Segments SurfaceSegmentation::segments_of(Partition best) const {
   best = merge_to_limit(context_, std::move(best), rules_.most_regions, executor_);
   Segments segments{.regions = {},
                     .open = {},
-                    .excess = total_excess(best.patches),
+                    .excess = total_excess(best.regions),
                     .seam_length = search::seam_length(surface_, best)};
   segments.open = std::move(best.open);
-  for (MappedRegion& patch : best.patches) segments.regions.push_back(std::move(patch.region));
+  for (MappedRegion& region : best.regions) segments.regions.push_back(std::move(region.region));
   return segments;
 }
 

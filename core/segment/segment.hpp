@@ -92,7 +92,7 @@ class SurfaceSegmentation {
   Stage stage_ = Stage::segment;
   ProgressEstimate progress_;
   MergeContext context_;
-  Partition patches_;
+  Partition partition_;
   std::optional<search::MergeSearch> search_;
   std::vector<search::Candidate> competing_;  ///< after large-neighbourhood search
   search::Candidate best_;

@@ -2,7 +2,7 @@
 // Which sets of faces were tried and found to have no sound map.
 //
 // Three quarters of all faces that a search tries end in flips or overlaps, and searches that begin
-// with the same patches come to the same sets again. Only failures are kept:
+// with the same regions come to the same sets again. Only failures are kept:
 // there is no map to remember of them. Rejected: unions that went well, too; 50 MB for 3 % of time.
 
 #include <cstdint>

@@ -120,17 +120,17 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
   Joined joined;
   const auto attempt = [&](std::span<const Index> glued, std::span<const char> cut) {
     Placement placement = pair.place(glued);
-    joined.patch = {};
+    joined.region = {};
     joined.verdict = Verdict::flawed;
     if (is_hopeless(pair, placement, open, a.area + b.area, length_of(glued))) return;
-    joined.patch = unite(a, b, std::move(placement.both));
-    const TestResult result = test_parameterization(surface_, cut, rules, joined.patch.region);
+    joined.region = unite(a, b, std::move(placement.both));
+    const TestResult result = test_parameterization(surface_, cut, rules, joined.region.region);
     joined.verdict = result.verdict;
-    joined.patch.excess = result.excess;
-    joined.patch.is_sound = result.verdict == Verdict::sound;
+    joined.region.excess = result.excess;
+    joined.region.is_sound = result.verdict == Verdict::sound;
   };
   attempt(common, open);
-  if (joined.patch.is_sound || is_cancelled(trial.stop)) return joined;
+  if (joined.region.is_sound || is_cancelled(trial.stop)) return joined;
   joined.slit = slit_of(common);
   if (joined.slit.empty()) return joined;
   std::vector<char> cut(open.begin(), open.end());
@@ -140,7 +140,7 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
     if (cut[h] == 0) glued.push_back(h);
   const Joined whole = joined;
   attempt(glued, cut);
-  return joined.patch.is_sound ? joined : whole;
+  return joined.region.is_sound ? joined : whole;
 }
 
 }  // namespace unwrapd::segment

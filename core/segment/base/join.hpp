@@ -23,7 +23,7 @@ struct MappedRegion {
 ExcessDistortion total_excess(std::span<const MappedRegion> regions);
 
 struct Joined {
-  MappedRegion patch;  ///< of both; sound where verdict says so; no faces where none was tried
+  MappedRegion region;  ///< of both; sound where verdict says so; no faces where none was tried
   Verdict verdict = Verdict::impossible;
   std::vector<Index> slit;  ///< half-edges of the common border that must stay open, both sides
 };

@@ -24,7 +24,7 @@ namespace unwrapd::segment {
 namespace {
 
 constexpr std::size_t kBatch = 4;   // unions tried at once
-constexpr double kWideShare = 0.2;  // what the wider patch's share of border counts
+constexpr double kWideShare = 0.2;  // what the wider region's share of border counts
 constexpr double kLarge = 0.04;     // of the page: of a union whose shape matters
 constexpr double kLast = 1e99;      // the key of unions that failed before
 
@@ -63,15 +63,15 @@ class Merging {
         surface_(context.surface),
         settings_(settings),
         open_(std::move(from.open)),
-        patches_(std::move(from.patches)) {
-    alive_.assign(patches_.size(), 1);
-    count_ = patches_.size();
-    for (const MappedRegion& patch : patches_) total_ += patch.excess;
+        regions_(std::move(from.regions)) {
+    alive_.assign(regions_.size(), 1);
+    count_ = regions_.size();
+    for (const MappedRegion& region : regions_) total_ += region.excess;
     measure_borders();
   }
 
   void run(Executor& executor) {
-    for (Index a = 0; a < static_cast<Index>(patches_.size()); ++a)
+    for (Index a = 0; a < static_cast<Index>(regions_.size()); ++a)
       for (const auto& [b, unused] : borders_[a])
         if (a < b) propose(a, b, {});
     while (!queue_.empty() && count_ > static_cast<std::size_t>(settings_.enough)) {
@@ -88,18 +88,18 @@ class Merging {
 
   [[nodiscard]] Partition take() {
     Partition left{{}, std::move(open_)};
-    for (std::size_t k = 0; k < patches_.size(); ++k)
-      if (alive_[k] != 0) left.patches.push_back(std::move(patches_[k]));
+    for (std::size_t k = 0; k < regions_.size(); ++k)
+      if (alive_[k] != 0) left.regions.push_back(std::move(regions_[k]));
     return left;
   }
 
  private:
   void measure_borders() {
     std::vector<Index> owner(surface_.mesh.faces.size(), -1);
-    for (std::size_t k = 0; k < patches_.size(); ++k)
-      for (const Index t : patches_[k].region.faces) owner[t] = static_cast<Index>(k);
-    borders_.resize(patches_.size());
-    perimeter_.assign(patches_.size(), 0);
+    for (std::size_t k = 0; k < regions_.size(); ++k)
+      for (const Index t : regions_[k].region.faces) owner[t] = static_cast<Index>(k);
+    borders_.resize(regions_.size());
+    perimeter_.assign(regions_.size(), 0);
     for (Index h = 0; h < static_cast<Index>(surface_.halfedges.twin.size()); ++h) {
       const Index twin = surface_.halfedges.twin[h], own = owner[face_of(h)];
       const Index other = twin == kNoTwin ? -1 : owner[face_of(twin)];
@@ -134,7 +134,7 @@ class Merging {
 
   void propose(Index a, Index b, const Forecast& forecast) {
     if (std::max(a, b) < settings_.whole) return;
-    if (forecast.is_impossible || !patches_[a].is_sound || !patches_[b].is_sound) return;
+    if (forecast.is_impossible || !regions_[a].is_sound || !regions_[b].is_sound) return;
     const double forecast_key = forecast.was_flawed ? kLast : key(a, b, forecast.rise);
     queue_.push({forecast_key, std::min(a, b), std::max(a, b)});
   }
@@ -144,7 +144,7 @@ class Merging {
   [[nodiscard]] bool would_waste(const Union& u, const Union& v) const {
     for (const auto& [large, small] : {std::pair(u.a, u.b), std::pair(u.b, u.a)})
       if ((large == v.a || large == v.b) &&
-          is_small_beside(patches_[small].region, patches_[large].region))
+          is_small_beside(regions_[small].region, regions_[large].region))
         return true;
     return false;
   }
@@ -163,54 +163,54 @@ class Merging {
     executor.for_each_block(static_cast<int>(batch.size()), [&](int k) {
       Union& own = batch[static_cast<std::size_t>(k)];
       own.tried = std::make_shared<Joined>(
-          joiner_.join(patches_[own.a], patches_[own.b], open_, settings_.cap,
+          joiner_.join(regions_[own.a], regions_[own.b], open_, settings_.cap,
                        {.stop = context_.stop, .memory = context_.failures}));
     });
     throw_if_cancelled(context_.stop);
     for (Union& both : batch) {
       if (context_.progress != nullptr)
-        context_.progress->add(patches_[both.a].region.faces.size() +
-                               patches_[both.b].region.faces.size());
+        context_.progress->add(regions_[both.a].region.faces.size() +
+                               regions_[both.b].region.faces.size());
       judge(std::move(both));
     }
   }
 
-  /// Whether the shape of the patch would leave too much of a page empty.
+  /// Whether the shape of the region would leave too much of a page empty.
   [[nodiscard]] bool is_awkward(const Joined& joined) const {
-    const MappedRegion& patch = joined.patch;
-    if (settings_.least_fill <= 0 || patch.area < kLarge * settings_.page_area) return false;
+    const MappedRegion& region = joined.region;
+    if (settings_.least_fill <= 0 || region.area < kLarge * settings_.page_area) return false;
     std::vector<char> open = open_;
     for (const Index h : joined.slit) open[h] = 1;
     UvMap points;
-    for (const auto& [from, to] : boundary_sides(surface_, open, patch.region)) {
+    for (const auto& [from, to] : boundary_sides(surface_, open, region.region)) {
       points.push_back(from);
       points.push_back(to);
     }
     points = pack::convex_hull(std::move(points));
     const double side = pack::squarest_box(points).size.maxCoeff();
     return side * side * settings_.least_fill > settings_.page_area ||
-           settings_.least_solid * area_within(points) > patch.area;
+           settings_.least_solid * area_within(points) > region.area;
   }
 
   void judge(Union both) {
     Forecast& known = known_[{both.a, both.b}];
     Joined& joined = *both.tried;
-    if (joined.patch.is_sound && is_awkward(joined)) joined.patch.is_sound = false;
+    if (joined.region.is_sound && is_awkward(joined)) joined.region.is_sound = false;
     const ExcessDistortion rise =
-        joined.patch.excess - patches_[both.a].excess - patches_[both.b].excess;
-    known = {std::max(rise.worst(), 0.0), !joined.patch.is_sound,
+        joined.region.excess - regions_[both.a].excess - regions_[both.b].excess;
+    known = {std::max(rise.worst(), 0.0), !joined.region.is_sound,
              joined.verdict == Verdict::impossible};
-    if (!joined.patch.is_sound) return;
+    if (!joined.region.is_sound) return;
     both.key = key(both.a, both.b, known.rise);
     queue_.push(std::move(both));
   }
 
   void accept(const Union& best) {
     const ExcessDistortion after =
-        total_ + best.tried->patch.excess - patches_[best.a].excess - patches_[best.b].excess;
+        total_ + best.tried->region.excess - regions_[best.a].excess - regions_[best.b].excess;
     if (after.worst() > std::max(settings_.budget, total_.worst())) return;
     total_ = after;
-    const auto joined = static_cast<Index>(patches_.size());
+    const auto joined = static_cast<Index>(regions_.size());
     double slit = 0;
     for (const Index h : best.tried->slit) {
       open_[h] = 1;
@@ -218,12 +218,12 @@ class Merging {
     }
     perimeter_.push_back(perimeter_[best.a] + perimeter_[best.b] - 2 * borders_[best.a].at(best.b) +
                          slit);
-    patches_.push_back(std::move(best.tried->patch));
+    regions_.push_back(std::move(best.tried->region));
     alive_.push_back(1);
     borders_.push_back(joined_borders(best.a, best.b));
     for (const Index part : {best.a, best.b}) {
       alive_[part] = 0;
-      patches_[part] = {};
+      regions_[part] = {};
     }
     --count_;
     for (const auto& [other, length] : borders_[joined]) meet(joined, other, length, best);
@@ -258,7 +258,7 @@ class Merging {
   const SegmentationMesh& surface_;
   const MergeSettings& settings_;
   std::vector<char> open_;
-  std::vector<MappedRegion> patches_;  ///< those that were merged are dead and empty
+  std::vector<MappedRegion> regions_;  ///< those that were merged are dead and empty
   std::vector<char> alive_;
   std::vector<std::map<Index, double>> borders_;  ///< lengths to each neighbour
   std::vector<double> perimeter_;
@@ -270,7 +270,7 @@ class Merging {
 
 }  // namespace
 
-Partition merge_patches(const MergeContext& context, const Joiner& joiner, Partition from,
+Partition merge_regions(const MergeContext& context, const Joiner& joiner, Partition from,
                         const MergeSettings& settings, Executor& executor) {
   Merging merging(context, joiner, std::move(from), settings);
   merging.run(executor);
@@ -279,8 +279,8 @@ Partition merge_patches(const MergeContext& context, const Joiner& joiner, Parti
 
 std::vector<Index> owners(const SegmentationMesh& surface, const Partition& partition) {
   std::vector<Index> owner(surface.mesh.faces.size());
-  for (std::size_t k = 0; k < partition.patches.size(); ++k)
-    for (const Index t : partition.patches[k].region.faces) owner[t] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < partition.regions.size(); ++k)
+    for (const Index t : partition.regions[k].region.faces) owner[t] = static_cast<Index>(k);
   return owner;
 }
 

@@ -35,13 +35,13 @@ struct MergeContext {
 
 /// Regions, and the half-edges inside regions that are seams nevertheless.
 struct Partition {
-  std::vector<MappedRegion> patches;
+  std::vector<MappedRegion> regions;
   std::vector<char> open;  ///< one a half-edge of the surface, 1: not glued
 };
 
 /// Merges greedily until no allowed union is left. The same for any executor. Throws
 /// Error{cancelled}.
-Partition merge_patches(const MergeContext& context, const Joiner& joiner, Partition from,
+Partition merge_regions(const MergeContext& context, const Joiner& joiner, Partition from,
                         const MergeSettings& settings, Executor& executor);
 
 /// The region of each face.

@@ -29,18 +29,18 @@ class Attaching {
         settings_(settings),
         partition_(partition),
         owner_(owners(surface_, partition)) {
-    for (const MappedRegion& patch : partition.patches) total_ += patch.excess;
+    for (const MappedRegion& region : partition.regions) total_ += region.excess;
   }
 
   void run() {
-    std::vector<std::size_t> order(partition_.patches.size());
+    std::vector<std::size_t> order(partition_.regions.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, std::less(),
-                             [&](std::size_t k) { return rounded(partition_.patches[k].area); });
+                             [&](std::size_t k) { return rounded(partition_.regions[k].area); });
     for (const std::size_t k : order)
-      if (partition_.patches[k].area < kSmallRegion) attach(static_cast<Index>(k));
-    std::erase_if(partition_.patches,
-                  [](const MappedRegion& patch) { return patch.region.faces.empty(); });
+      if (partition_.regions[k].area < kSmallRegion) attach(static_cast<Index>(k));
+    std::erase_if(partition_.regions,
+                  [](const MappedRegion& region) { return region.region.faces.empty(); });
   }
 
  private:
@@ -66,7 +66,7 @@ class Attaching {
   [[nodiscard]] std::vector<Stretch> stretches(Index k) const {
     std::vector<Index> sides;
     std::map<Index, Index> before;
-    for (const Index t : partition_.patches[k].region.faces)
+    for (const Index t : partition_.regions[k].region.faces)
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
         if (is_seam(h)) sides.push_back(h), before[next(h)] = h;
     std::map<Index, char> taken;
@@ -110,7 +110,7 @@ class Attaching {
 
   /// Whether small region k and the other have a sound map glued there; then they are one.
   bool glue(Index k, Index into, std::span<const Index> edges) {
-    MappedRegion &own = partition_.patches[k], &other = partition_.patches[into];
+    MappedRegion &own = partition_.regions[k], &other = partition_.regions[into];
     if (!own.is_sound || !other.is_sound) return false;
     std::vector<char> open = partition_.open;
     for (const Index t : own.region.faces)

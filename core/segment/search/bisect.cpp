@@ -78,7 +78,7 @@ class Halving {
 std::optional<Partition> bisect(const MergeContext& context, const Partition& partition,
                                 std::size_t k) {
   const SegmentationMesh& surface = context.surface;
-  const Region& whole = partition.patches[k].region;
+  const Region& whole = partition.regions[k].region;
   const std::vector<char> half = Halving(surface, partition, whole).find();
   std::array<MappedRegion, 2> parts;
   for (std::size_t f = 0; f < half.size(); ++f) {
@@ -99,8 +99,8 @@ std::optional<Partition> bisect(const MergeContext& context, const Partition& pa
     part.is_sound = true;
   }
   Partition cut = partition;
-  cut.patches[k] = std::move(parts[0]);
-  cut.patches.push_back(std::move(parts[1]));
+  cut.regions[k] = std::move(parts[0]);
+  cut.regions.push_back(std::move(parts[1]));
   return cut;
 }
 

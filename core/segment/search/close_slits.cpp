@@ -21,7 +21,7 @@ class Gluing {
         settings_(settings),
         partition_(partition),
         seams_(surface_, partition) {
-    for (const MappedRegion& patch : partition.patches) total_ += patch.excess;
+    for (const MappedRegion& region : partition.regions) total_ += region.excess;
   }
 
   void run() {
@@ -48,7 +48,7 @@ class Gluing {
 
   /// Whether the region keeps a sound map with these glued; then they are.
   bool glue(std::span<const Index> edges) {
-    MappedRegion& old = partition_.patches[seams_.owner(edges.front())];
+    MappedRegion& old = partition_.regions[seams_.owner(edges.front())];
     const auto set_open = [&](char is_open) {
       for (const Index h : edges) partition_.open[h] = partition_.open[twin(h)] = is_open;
     };

@@ -25,12 +25,12 @@ std::vector<Index> neighbours(const SegmentationMesh& surface, std::span<const I
 }
 
 /// A random region, drawn by area: small regions change little. seed: any number.
-std::size_t drawn_by_area(std::span<const MappedRegion> patches, std::uint64_t seed) {
+std::size_t drawn_by_area(std::span<const MappedRegion> regions, std::uint64_t seed) {
   double all = 0;
-  for (const MappedRegion& patch : patches) all += patch.area;
+  for (const MappedRegion& region : regions) all += region.area;
   double left = all * static_cast<double>(seed >> 11) * 0x1p-53;
   std::size_t k = 0;
-  for (; k + 1 < patches.size() && left >= patches[k].area; ++k) left -= patches[k].area;
+  for (; k + 1 < regions.size() && left >= regions[k].area; ++k) left -= regions[k].area;
   return k;
 }
 
@@ -41,18 +41,18 @@ std::vector<char> drawn_regions(const SegmentationMesh& surface, const Partition
   const auto below = [&](std::size_t bound) {
     return static_cast<std::size_t>(splitmix64(state += kGoldenStep) % bound);
   };
-  std::vector<char> loose(merged.patches.size(), 0);
-  const std::size_t centre = drawn_by_area(merged.patches, splitmix64(state += kGoldenStep));
+  std::vector<char> loose(merged.regions.size(), 0);
+  const std::size_t centre = drawn_by_area(merged.regions, splitmix64(state += kGoldenStep));
   loose[centre] = 1;
-  double area = merged.patches[centre].area;
+  double area = merged.regions[centre].area;
   std::vector<Index> around = neighbours(surface, owner, static_cast<Index>(centre));
   while (!around.empty()) {
     const std::size_t k = below(around.size());
     const auto other = static_cast<std::size_t>(around[k]);
     around.erase(around.begin() + static_cast<std::ptrdiff_t>(k));
-    if (area + merged.patches[other].area > kMostLoose) continue;
+    if (area + merged.regions[other].area > kMostLoose) continue;
     loose[other] = 1;
-    area += merged.patches[other].area;
+    area += merged.regions[other].area;
   }
   return loose;
 }
@@ -65,12 +65,12 @@ Destroyed destroy(const SegmentationMesh& surface, const Partition& from, const 
   const std::vector<char> loose = drawn_regions(surface, merged, owner, seed);
   Destroyed result{{{}, merged.open}, 0};
   for (std::size_t k = 0; k < loose.size(); ++k)
-    if (loose[k] == 0) result.partition.patches.push_back(merged.patches[k]);
-  result.whole = static_cast<Index>(result.partition.patches.size());
-  for (const MappedRegion& patch : from.patches) {
-    if (loose[owner[patch.region.faces.front()]] == 0) continue;
-    result.partition.patches.push_back(patch);
-    for (const Index t : patch.region.faces)
+    if (loose[k] == 0) result.partition.regions.push_back(merged.regions[k]);
+  result.whole = static_cast<Index>(result.partition.regions.size());
+  for (const MappedRegion& region : from.regions) {
+    if (loose[owner[region.region.faces.front()]] == 0) continue;
+    result.partition.regions.push_back(region);
+    for (const Index t : region.region.faces)
       for (Index h = 3 * t; h < 3 * t + 3; ++h) result.partition.open[h] = from.open[h];
   }
   return result;

@@ -101,7 +101,7 @@ void MergeSearch::search_neighbourhoods(std::vector<Candidate>& best) {
   const auto count = static_cast<double>(best.size());
   double idle = 0;  // rounds without a gain
   for (const std::size_t end = rounds_done_ + rounds_; rounds_done_ < end; ++rounds_done_, ++idle) {
-    const auto regions = static_cast<double>(best.front().partition.patches.size());
+    const auto regions = static_cast<double>(best.front().partition.regions.size());
     if (idle > extent_.idle * regions) break;
     begin(kMergesOfARound * count);
     std::vector<Candidate> found = solve::parallel_map<Candidate>(
@@ -154,7 +154,7 @@ Candidate MergeSearch::cheapest(std::vector<Candidate> all) const {
   Candidate best;
   for (Candidate& own : all) {
     own = price(std::move(own), best.cost.all, kUsual);
-    if (own.cost.all < best.cost.all || best.partition.patches.empty()) best = std::move(own);
+    if (own.cost.all < best.cost.all || best.partition.regions.empty()) best = std::move(own);
   }
   return best;
 }
@@ -163,7 +163,7 @@ Candidate MergeSearch::bisect_regions(Candidate whole) {
   Candidate best = price(std::move(whole), kInfinity, kAcross);
   while (best.cost.all > best.cost.seams) {
     std::vector<Candidate> found =
-        solve::parallel_map<Candidate>(best.partition.patches.size(), executor_,
+        solve::parallel_map<Candidate>(best.partition.regions.size(), executor_,
                                        [&](std::size_t k) { return with_halves(best, k); });
     learn(found);
     auto next = std::ranges::min_element(found, std::less(), all_of);
@@ -231,18 +231,18 @@ Candidate MergeSearch::track(Search search) const {
 Candidate MergeSearch::merge(Partition partition, const MergeSettings& settings) const {
   return track([&](const MergeContext& context) {
     SerialExecutor serial;
-    return merge_patches(context, joiner_, std::move(partition), settings, serial);
+    return merge_regions(context, joiner_, std::move(partition), settings, serial);
   });
 }
 
 /// The partition after more unions, with its borders shortened again.
 Candidate MergeSearch::merge_more(const Partition& partition, double least_fill) const {
-  if (partition.patches.size() == 1) return {};
+  if (partition.regions.size() == 1) return {};
   MergeSettings settings = settings_;
   settings.least_fill = least_fill;
   return track([&](const MergeContext& context) {
     SerialExecutor serial;
-    Partition next = merge_patches(context, joiner_, partition, settings, serial);
+    Partition next = merge_regions(context, joiner_, partition, settings, serial);
     shorten_seams(context, settings, next);
     return next;
   });
@@ -251,7 +251,7 @@ Candidate MergeSearch::merge_more(const Partition& partition, double least_fill)
 /// One round of large-neighbourhood search. The cost is known where it is lower than that of
 /// `best`.
 Candidate MergeSearch::remerge_part(const Candidate& best, std::size_t number) const {
-  if (best.partition.patches.size() <= 1) return {};
+  if (best.partition.regions.size() <= 1) return {};
   MergeSettings settings = settings_of(number);
   settings.seed = kFirstSeedOfRepairs + static_cast<int>(number);
   settings.noise = kNoiseOfRepairs;
@@ -262,20 +262,20 @@ Candidate MergeSearch::remerge_part(const Candidate& best, std::size_t number) c
 }
 
 Candidate MergeSearch::with_halves(const Candidate& whole, std::size_t k) const {
-  if (whole.partition.patches[k].area < kLargeRegion) return {};
+  if (whole.partition.regions[k].area < kLargeRegion) return {};
   Candidate apart = track([&](const MergeContext& context) {
     std::optional<Partition> cut = bisect(context, whole.partition, k);
     if (!cut) return Partition{};
     shorten_seams(context, settings_, *cut);
     return std::move(*cut);
   });
-  if (apart.partition.patches.empty()) return apart;
+  if (apart.partition.regions.empty()) return apart;
   return price(std::move(apart), whole.cost.all, kAcross);
 }
 
 /// Each distinct candidate once, the shortest seams first.
 std::vector<Candidate> MergeSearch::distinct(std::vector<Candidate> all) const {
-  std::erase_if(all, [](const Candidate& own) { return own.partition.patches.empty(); });
+  std::erase_if(all, [](const Candidate& own) { return own.partition.regions.empty(); });
   for (Candidate& own : all) own = price(std::move(own), 0, kUsual);
   const auto seams = [](const Candidate& own) { return own.cost.seams; };
   std::ranges::stable_sort(all, std::less(), seams);

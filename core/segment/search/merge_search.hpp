@@ -1,5 +1,5 @@
 #pragma once
-// The steps of the search for the best way to merge the patches of a surface, in the order of their
+// The steps of the search for the best way to merge the regions of a surface, in the order of their
 // use by SurfaceSegmentation.
 
 #include <limits>
@@ -40,8 +40,8 @@ class MergeSearch {
   /// again, many times; what is cheaper stays.
   void search_neighbourhoods(std::vector<Candidate>& best);
 
-  /// Shortens the borders of all. From here on borders may run through patches, so that
-  /// search_neighbourhoods() can no longer be used.
+  /// Shortens the borders of all. From here on borders may run through regions that merging
+  /// started from, so that search_neighbourhoods() can no longer be used.
   std::vector<Candidate> shorten_borders(std::vector<Candidate> all);
 
   /// Adds to each what it comes to when the unions are merged that its short borders allow: of any

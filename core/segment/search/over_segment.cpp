@@ -4,9 +4,9 @@
 // Every face begins as a cluster. The two neighbours become one whose union adds least to the
 // variation of normals, compared with the border that it removes and the roundness that it leaves;
 // this ends when no union is flat enough. Rejected: Lloyd iterations on proxies (Cohen-Steiner et
-// al.): the number of patches must be known, and patches fall apart.
+// al.): the number of regions must be known, and regions fall apart.
 //
-// The flatness is tightened until the patches use only their part of the distortion. A patch
+// The flatness is tightened until the regions use only their part of the distortion. A region
 // without a sound map (a tube, a fold) is clustered again, ever more tightly. This ends because a
 // single triangle always has a sound map.
 #include "core/segment/search/over_segment.hpp"
@@ -29,15 +29,15 @@
 namespace unwrapd::segment::search {
 namespace {
 
-constexpr double kFlatness = 0.06;  // mean 1 - cosine within a patch; half for each next round
+constexpr double kFlatness = 0.06;  // mean 1 - cosine within a region; half for each next round
 constexpr int kFlatnessRounds = 6;
-constexpr double kShareOfPatches = 0.3;  // of the budget, that patches may use before they merge
-constexpr double kRefinement = 0.3;      // of flatness, each time a patch has no sound map
-constexpr int kRefinements = 4;          // then the patch falls into its triangles
+constexpr double kShareOfStart = 0.3;  // of the budget, that the first regions may use
+constexpr double kRefinement = 0.3;    // of flatness, each time a region has no sound map
+constexpr int kRefinements = 4;        // then the region falls into its triangles
 constexpr int kSmoothingPasses = 3;
 constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach around sharper edges
-constexpr double kPatchesShare = 0.1, kFacesOfPatches = 6;  // of the work; for each face
-constexpr std::size_t kPatchesAtOnce = 16;                  // then progress is told
+constexpr double kShareOfWork = 0.1, kFacesOfStart = 6;  // of the work; for each face
+constexpr std::size_t kRegionsAtOnce = 16;               // then progress is told
 constexpr double kBaseCost = 2e-3;  // of an area, so that flat neighbours merge small ones first
 constexpr int kStepsBetweenLooks = 256;
 
@@ -156,60 +156,60 @@ void separate_kept(const SegmentationMesh& surface, std::vector<Index>& label) {
   separate_labels(surface.halfedges, label);
 }
 
-/// The patch of each label with a map, which starts from its projection.
-std::vector<MappedRegion> map_patches(const MergeContext& context, std::vector<Index>& label,
+/// The region of each label with a map, which starts from its projection.
+std::vector<MappedRegion> map_regions(const MergeContext& context, std::vector<Index>& label,
                                       Executor& executor) {
   const SegmentationMesh& surface = context.surface;
   std::vector<std::vector<Index>> faces = faces_by_label(label, renumber(label));
-  std::vector<MappedRegion> patches(faces.size());
+  std::vector<MappedRegion> regions(faces.size());
   const auto map = [&](std::size_t k) {
-    MappedRegion& patch = patches[k];
-    patch.region.faces = std::move(faces[k]);
-    patch.region.uv = projected(surface, patch.region.faces);
+    MappedRegion& region = regions[k];
+    region.region.faces = std::move(faces[k]);
+    region.region.uv = projected(surface, region.region.faces);
     const TestRules rules{.most_excess = std::numeric_limits<double>::infinity(),
                           .stop = context.stop};
-    const TestResult result = test_parameterization(surface, {}, rules, patch.region);
-    patch.excess = result.excess;
-    patch.is_sound = result.verdict == Verdict::sound;
-    for (const Index t : patch.region.faces) patch.area += surface.area(t);
+    const TestResult result = test_parameterization(surface, {}, rules, region.region);
+    region.excess = result.excess;
+    region.is_sound = result.verdict == Verdict::sound;
+    for (const Index t : region.region.faces) region.area += surface.area(t);
   };
-  for (std::size_t first = 0; first < patches.size(); first += kPatchesAtOnce) {
-    const std::size_t count = std::min(kPatchesAtOnce, patches.size() - first);
+  for (std::size_t first = 0; first < regions.size(); first += kRegionsAtOnce) {
+    const std::size_t count = std::min(kRegionsAtOnce, regions.size() - first);
     executor.for_each_block(static_cast<int>(count),
                             [&](int block) { map(first + static_cast<std::size_t>(block)); });
     throw_if_cancelled(context.stop);
     std::size_t mapped = 0;
-    for (std::size_t k = first; k < first + count; ++k) mapped += patches[k].region.faces.size();
+    for (std::size_t k = first; k < first + count; ++k) mapped += regions[k].region.faces.size();
     context.progress->add(mapped);
   }
-  return patches;
+  return regions;
 }
 
-/// Splits patches without a sound map into smaller ones, by the finer labels.
-void split_unsound(const SegmentationMesh& surface, std::span<const MappedRegion> patches,
+/// Splits regions without a sound map into smaller ones, by the finer labels.
+void split_unsound(const SegmentationMesh& surface, std::span<const MappedRegion> regions,
                    std::span<const Index> finer, std::vector<Index>& label) {
   const auto face_count = static_cast<Index>(label.size());
-  for (const MappedRegion& patch : patches) {
-    if (patch.is_sound) continue;
-    for (const Index t : patch.region.faces) label[t] = face_count + finer[t];
+  for (const MappedRegion& region : regions) {
+    if (region.is_sound) continue;
+    for (const Index t : region.region.faces) label[t] = face_count + finer[t];
   }
   separate_labels(surface.halfedges, label);
 }
 
-std::vector<MappedRegion> sound_patches(const MergeContext& context, double flatness,
+std::vector<MappedRegion> sound_regions(const MergeContext& context, double flatness,
                                         std::vector<Index> label, Executor& executor) {
   const SegmentationMesh& surface = context.surface;
-  std::vector<MappedRegion> patches = map_patches(context, label, executor);
-  const auto is_sound = [](const MappedRegion& patch) { return patch.is_sound; };
-  for (int k = 0; k <= kRefinements && !std::ranges::all_of(patches, is_sound); ++k) {
+  std::vector<MappedRegion> regions = map_regions(context, label, executor);
+  const auto is_sound = [](const MappedRegion& region) { return region.is_sound; };
+  for (int k = 0; k <= kRefinements && !std::ranges::all_of(regions, is_sound); ++k) {
     flatness *= kRefinement;
     std::vector<Index> finer(label.size());
     std::iota(finer.begin(), finer.end(), 0);
     if (k < kRefinements) finer = cluster_faces(surface, flatness, context.stop);
-    split_unsound(surface, patches, finer, label);
-    patches = map_patches(context, label, executor);
+    split_unsound(surface, regions, finer, label);
+    regions = map_regions(context, label, executor);
   }
-  return patches;
+  return regions;
 }
 
 }  // namespace
@@ -217,15 +217,15 @@ std::vector<MappedRegion> sound_patches(const MergeContext& context, double flat
 std::vector<MappedRegion> over_segment(const MergeContext& context, double excess,
                                        Executor& executor) {
   const SegmentationMesh& surface = context.surface;
-  context.progress->begin(kPatchesShare, kFacesOfPatches * surface.face_count());
-  const double allowed = kShareOfPatches * excess;
+  context.progress->begin(kShareOfWork, kFacesOfStart * surface.face_count());
+  const double allowed = kShareOfStart * excess;
   double flatness = kFlatness;
   for (int round = 1;; ++round, flatness /= 2) {
     std::vector<Index> label = cluster_faces(surface, flatness, context.stop);
     smooth_labels(surface, kSmoothingPasses, kSmoothCosine, label);
     if (!surface.kept.empty()) separate_kept(surface, label);
-    std::vector<MappedRegion> patches = sound_patches(context, flatness, label, executor);
-    if (round == kFlatnessRounds || total_excess(patches).worst() <= allowed) return patches;
+    std::vector<MappedRegion> regions = sound_regions(context, flatness, label, executor);
+    if (round == kFlatnessRounds || total_excess(regions).worst() <= allowed) return regions;
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Over-segmentation: a surface in many small, nearly flat patches, which merging starts from.
+// Over-segmentation: a surface in many small, nearly flat regions, which merging starts from.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace unwrapd::segment::search {
 
-/// Patches whose maps are sound and together use only a part of the excess that is allowed, so that
+/// Regions whose maps are sound and together use only a part of the excess that is allowed, so that
 /// merging can spend the rest. The context needs a progress estimate. Throws Error{cancelled}.
 std::vector<MappedRegion> over_segment(const MergeContext& context, double excess,
                                        Executor& executor);

@@ -15,9 +15,9 @@ constexpr double kMostPage = 1.5;  // of the surface
 
 std::vector<charts::Outline> outlines(const SegmentationMesh& surface, const Partition& partition,
                                       const std::vector<Index>& owner) {
-  std::vector<charts::Outline> all(partition.patches.size());
+  std::vector<charts::Outline> all(partition.regions.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const Region& region = partition.patches[k].region;
+    const Region& region = partition.regions[k].region;
     for (std::size_t f = 0; f < region.faces.size(); ++f)
       for (Index i = 0; i < 3; ++i) {
         const Index h = 3 * region.faces[f] + i, twin = surface.halfedges.twin[h];
@@ -55,8 +55,8 @@ PartitionCost partition_cost(const SegmentationMesh& surface, const Partition& p
   if (length <= 0) return {0, 0, 0};
   const double seam = seam_of(surface, partition, owner, surface.seam_cost);
   double charts = 0;
-  for (const MappedRegion& patch : partition.patches)
-    charts += patch.area < kSmallRegion ? rules.small_chart : rules.chart;
+  for (const MappedRegion& region : partition.regions)
+    charts += region.area < kSmallRegion ? rules.small_chart : rules.chart;
   PartitionCost cost{.seams = rounded(seam + charts), .length = rounded(length)};
   if (cost.length >= rules.longest || cost.seams >= rules.limit) return cost;
   cost.all = cost.seams;

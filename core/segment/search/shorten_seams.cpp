@@ -35,7 +35,7 @@ class Shortening {
         partition_(partition),
         corners_(linear::vertex_corners(surface_.mesh.faces, surface_.mesh.vertex_count())),
         seams_(surface_, partition) {
-    for (const MappedRegion& patch : partition.patches) total_ += patch.excess;
+    for (const MappedRegion& region : partition.regions) total_ += region.excess;
   }
 
   void run() {
@@ -100,8 +100,8 @@ class Shortening {
   }
 
   bool move_border(const Chain& row, const Chain& path) {
-    MappedRegion& a = partition_.patches[seams_.owner(row.front())];
-    MappedRegion& b = partition_.patches[seams_.owner(twin(row.front()))];
+    MappedRegion& a = partition_.regions[seams_.owner(row.front())];
+    MappedRegion& b = partition_.regions[seams_.owner(twin(row.front()))];
     auto sides = part_faces(row, path);
     const std::size_t count = a.region.faces.size() + b.region.faces.size();
     if (sides[0].empty() || sides[0].size() + sides[1].size() != count) return false;
@@ -153,28 +153,30 @@ class Shortening {
     return {std::move(left), std::move(right)};
   }
 
-  /// A patch of some of the faces of a region, from its map. most: of its excess, for its area.
+  /// Some of the faces of a region as one of their own, with its map. most: of its excess, for its
+  /// area.
   [[nodiscard]] MappedRegion map_faces(std::vector<Index> faces, const Region& both,
                                        double most) const {
     const Ranks rank(surface_.mesh.faces.size(), both.faces);
-    MappedRegion patch;
+    MappedRegion region;
     for (const Index t : faces) {
-      patch.region.uv.push_back(both.uv[rank[t]]);
-      patch.area += surface_.area(t);
+      region.region.uv.push_back(both.uv[rank[t]]);
+      region.area += surface_.area(t);
     }
-    patch.region.faces = std::move(faces);
+    region.region.faces = std::move(faces);
     const TestRules rules{
-        .most_excess = most * patch.area, .stop = context_.stop, .memory = context_.failures};
-    const TestResult result = test_parameterization(surface_, partition_.open, rules, patch.region);
-    if (context_.progress != nullptr) context_.progress->add(patch.region.faces.size());
-    patch.excess = result.excess;
-    patch.is_sound = result.verdict == Verdict::sound;
-    return patch;
+        .most_excess = most * region.area, .stop = context_.stop, .memory = context_.failures};
+    const TestResult result =
+        test_parameterization(surface_, partition_.open, rules, region.region);
+    if (context_.progress != nullptr) context_.progress->add(region.region.faces.size());
+    region.excess = result.excess;
+    region.is_sound = result.verdict == Verdict::sound;
+    return region;
   }
 
   /// Whether the slit, which is closed, runs along the path from now on.
   bool move_slit(const Chain& slit, const Chain& path) {
-    MappedRegion& old = partition_.patches[seams_.owner(slit.front())];
+    MappedRegion& old = partition_.regions[seams_.owner(slit.front())];
     MappedRegion now = old;
     set_open(slit, 1);
     set_open(path, 1);

@@ -122,7 +122,7 @@ Partition slit_open(const SegmentationMesh& surface, IsSlit is_slit) {
         is_slit(surface.mesh.positions[std::size_t(start_of(surface.mesh.faces, h))],
                 surface.mesh.positions[std::size_t(end_of(surface.mesh.faces, h))]))
       whole.open[std::size_t(h)] = 1;
-  MappedRegion& region = whole.patches.front();
+  MappedRegion& region = whole.regions.front();
   for (Index t = 0; t < surface.face_count(); ++t) region.region.faces.push_back(t);
   region.region.uv = projected(surface, region.region.faces);
   region.area = 1;
@@ -149,7 +149,7 @@ TEST(CloseSlits, ClosesOnesThatAreOfNoUse) {
   EXPECT_GT(slit_length(surface, whole), 0.5);
   search::close_slits({surface}, {.budget = 0.02, .cap = 0.08}, whole);
   EXPECT_EQ(slit_length(surface, whole), 0);
-  EXPECT_LT(whole.patches.front().excess.worst(), 1e-6);
+  EXPECT_LT(whole.regions.front().excess.worst(), 1e-6);
 }
 
 /// A cap opened from its rim to the pole.
@@ -166,7 +166,7 @@ Partition opened_cap(const SegmentationMesh& surface) {
 TEST(CloseSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound) {
   const SegmentationMesh surface = segmentation_mesh_of(sphere_cap(24, 12, 1.3));
   const Partition open = opened_cap(surface);
-  const double least = open.patches.front().excess.worst();
+  const double least = open.regions.front().excess.worst();
   for (const bool is_of_all : {true, false}) {
     double last = slit_length(surface, open);
     for (const double bound : {0.01, 0.02, 0.2}) {
@@ -175,7 +175,7 @@ TEST(CloseSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound
                           {.budget = is_of_all ? bound : 1, .cap = is_of_all ? 1 : bound}, glued);
       EXPECT_LT(slit_length(surface, glued), last) << bound;
       last = slit_length(surface, glued);
-      const MappedRegion& region = glued.patches.front();
+      const MappedRegion& region = glued.regions.front();
       EXPECT_LE(region.excess.worst(), std::max(bound, least)) << is_of_all;
       Region again = region.region;
       EXPECT_EQ(test_parameterization(surface, glued.open, {.most_excess = 1}, again).verdict,
@@ -189,7 +189,7 @@ TEST(CloseSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound
 TEST(CloseSlits, LeavesOneOpenWhereTheOthersHaveAllThatThereIs) {
   const SegmentationMesh surface = segmentation_mesh_of(sphere_cap(24, 12, 1.3));
   Partition open = opened_cap(surface);
-  MappedRegion& elsewhere = open.patches.emplace_back();
+  MappedRegion& elsewhere = open.regions.emplace_back();
   elsewhere.excess = {0.19, 0.19};
   const double before = slit_length(surface, open);
   Partition glued = open;
@@ -198,7 +198,7 @@ TEST(CloseSlits, LeavesOneOpenWhereTheOthersHaveAllThatThereIs) {
   glued = open;
   search::close_slits({surface}, {.budget = 0.2, .cap = 0.2}, glued);
   EXPECT_GT(slit_length(surface, glued), before / 2);
-  EXPECT_LE((glued.patches[0].excess + glued.patches[1].excess).worst(), 0.2);
+  EXPECT_LE((glued.regions[0].excess + glued.regions[1].excess).worst(), 0.2);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace unwrapd::segment {
 namespace {
 
-/// Patches of a flat sheet, one for each value of label(middle of a face), with their own places
+/// Regions of a flat sheet, one for each value of label(middle of a face), with their own places
 /// for maps.
 template <class Label>
 Partition parted(const SegmentationMesh& surface, Label label) {
@@ -22,13 +22,13 @@ Partition parted(const SegmentationMesh& surface, Label label) {
     for (const Index v : surface.mesh.faces[std::size_t(t)])
       middle += surface.mesh.positions[std::size_t(v)] / 3;
     const auto k = std::size_t(label(middle));
-    if (parts.patches.size() <= k) parts.patches.resize(k + 1);
-    parts.patches[k].region.faces.push_back(t);
+    if (parts.regions.size() <= k) parts.regions.resize(k + 1);
+    parts.regions[k].region.faces.push_back(t);
   }
-  for (MappedRegion& patch : parts.patches) {
-    patch.region.uv = projected(surface, patch.region.faces);
-    for (const Index t : patch.region.faces) patch.area += surface.area(t);
-    patch.is_sound = true;
+  for (MappedRegion& region : parts.regions) {
+    region.region.uv = projected(surface, region.region.faces);
+    for (const Index t : region.region.faces) region.area += surface.area(t);
+    region.is_sound = true;
   }
   return parts;
 }
@@ -41,7 +41,7 @@ std::size_t merged_count(const SegmentationMesh& surface, const Partition& from,
                          MergeSettings settings) {
   SerialExecutor serial;
   settings.budget = settings.cap = 0.02;
-  return merge_patches({surface}, Joiner(surface), from, settings, serial).patches.size();
+  return merge_regions({surface}, Joiner(surface), from, settings, serial).regions.size();
 }
 
 /// Halves of a strip 16 wide and 1 high, and of one 2 wide.
@@ -98,12 +98,12 @@ TEST(Merge, TestsNoTwoUnionsOfOneLargeRegionAtOnce) {
     const int column = int((m.x() - corner.x()) / side), row = int((m.y() - corner.y()) / side);
     return row == 23 && column % 2 == 1 ? (column + 1) / 2 : 0;
   });
-  ASSERT_EQ(comb.patches.size(), 13U);
+  ASSERT_EQ(comb.regions.size(), 13U);
   ProgressEstimate progress({});
   SerialExecutor serial;
-  const Partition all = merge_patches({.surface = surface, .progress = &progress}, Joiner(surface),
+  const Partition all = merge_regions({.surface = surface, .progress = &progress}, Joiner(surface),
                                       comb, {.budget = 0.02, .cap = 0.02}, serial);
-  EXPECT_EQ(all.patches.size(), 1U);
+  EXPECT_EQ(all.regions.size(), 1U);
   double tested = 0;
   for (int tooth = 1; tooth <= 12; ++tooth) tested += 1200 - 24 + 2 * tooth;
   EXPECT_EQ(progress.done(), tested);
@@ -123,9 +123,9 @@ TEST(Merge, DrawsLotsWhereItHasAWhim) {
     std::vector<std::vector<Index>> faces;
     const MergeSettings settings{
         .budget = 0.02, .cap = 0.02, .noise = noise, .seed = seed, .enough = 6};
-    for (const MappedRegion& patch :
-         merge_patches({surface}, Joiner(surface), squares, settings, serial).patches)
-      faces.push_back(patch.region.faces);
+    for (const MappedRegion& region :
+         merge_regions({surface}, Joiner(surface), squares, settings, serial).regions)
+      faces.push_back(region.region.faces);
     return faces;
   };
   EXPECT_EQ(merged(0, 1), merged(0, 2));
@@ -144,7 +144,7 @@ TEST(Merge, TellsOfSlitsOnBothSides) {
     return 2 * int(axis) + (m[axis] > 0 ? 1 : 0);
   };
   SerialExecutor serial;
-  const Partition all = merge_patches({surface}, Joiner(surface), parted(surface, side),
+  const Partition all = merge_regions({surface}, Joiner(surface), parted(surface, side),
                                       {.budget = 0.02, .cap = 0.08}, serial);
   double slit = 0;
   for (std::size_t h = 0; h < all.open.size(); ++h) {
@@ -152,7 +152,7 @@ TEST(Merge, TellsOfSlitsOnBothSides) {
     EXPECT_EQ(all.open[std::size_t(surface.halfedges.twin[h])], 1);
     slit += surface.length[h] / 2;
   }
-  EXPECT_EQ(all.patches.size(), 1U);
+  EXPECT_EQ(all.regions.size(), 1U);
   EXPECT_NEAR(slit, 7 * std::sqrt(1.0 / 6), 1e-9);  // of twelve edges a tree of five is glued
 }
 
@@ -166,14 +166,14 @@ TEST(Merge, MeasuresTheShapeThatSlitsGive) {
   };
   const auto count = [&](double least_solid) {
     SerialExecutor serial;
-    return merge_patches({surface}, Joiner(surface), parted(surface, side),
+    return merge_regions({surface}, Joiner(surface), parted(surface, side),
                          {.budget = 0.02,
                           .cap = 0.08,
                           .page_area = 1,
                           .least_fill = 0.01,
                           .least_solid = least_solid},
                          serial)
-        .patches.size();
+        .regions.size();
   };
   EXPECT_EQ(count(0.6), 1U);
   EXPECT_GT(count(0.9), 1U);
@@ -234,7 +234,7 @@ TEST(Join, TriesAlongBothStretchesOnlyWhatMayMeetThere) {
   EXPECT_EQ(both.verdict, Verdict::sound);  // along one
   EXPECT_EQ(both.slit.size(), 2U * 17);
   const std::vector<char> open(tube.surface.length.size(), 0);
-  EXPECT_FALSE(failures.find(trial_key(open, {}, both.patch.region), 1));
+  EXPECT_FALSE(failures.find(trial_key(open, {}, both.region.region), 1));
 }
 
 /// A flat ring, and a wall down from its inner edge, rolled out along its first line.
@@ -268,8 +268,8 @@ TEST(Join, TriesNoWallWithThePlateAroundIt) {
     part.area += surface.area(t);
   }
   const Joined joined = Joiner(surface).join(parts[0], parts[1], open, 1, {});
-  EXPECT_FALSE(joined.patch.is_sound);
-  EXPECT_TRUE(joined.patch.region.faces.empty());
+  EXPECT_FALSE(joined.region.is_sound);
+  EXPECT_TRUE(joined.region.region.faces.empty());
   EXPECT_TRUE(joined.slit.empty());  // the edge of a hole is one stretch
 }
 

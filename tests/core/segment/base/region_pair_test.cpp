@@ -86,10 +86,10 @@ TEST(Join, TriesNothingThatLiesOnTheLargeRegion) {
   EXPECT_EQ(joined(small).verdict, Verdict::sound);
   small.turn_flap_over();
   EXPECT_EQ(joined(small).verdict, Verdict::flawed);
-  EXPECT_TRUE(joined(small).patch.region.faces.empty());
+  EXPECT_TRUE(joined(small).region.region.faces.empty());
   SheetWithFlap two_faces(520, 1, 1);  // too few to tell
   two_faces.turn_flap_over();
-  EXPECT_FALSE(joined(two_faces).patch.region.faces.empty());
+  EXPECT_FALSE(joined(two_faces).region.region.faces.empty());
 }
 
 TEST(Join, LaysTheSmallerBesideTheLarger) {
@@ -97,7 +97,7 @@ TEST(Join, LaysTheSmallerBesideTheLarger) {
   const Joined joined =
       Joiner(sheet.surface).join(sheet.regions[1], sheet.regions[0], sheet.open, 1, {});
   ASSERT_EQ(joined.verdict, Verdict::sound);
-  EXPECT_EQ(joined.patch.region.faces.front(), sheet.regions[0].region.faces.front());
+  EXPECT_EQ(joined.region.region.faces.front(), sheet.regions[0].region.faces.front());
 }
 
 /// .017 of the sheet is added, after .02: more than .03 since it was mapped as a whole.

@@ -34,13 +34,13 @@ struct Can {
     surface = make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
     parts = {std::vector<MappedRegion>(2), std::vector<char>(surface.length.size(), 0)};
     for (Index t = 0; t < surface.face_count(); ++t) {
-      Region& own = parts.patches[t % 3 == 2 ? 1 : 0].region;
+      Region& own = parts.regions[t % 3 == 2 ? 1 : 0].region;
       own.faces.push_back(t);
-      parts.patches[t % 3 == 2 ? 1 : 0].area += surface.area(t);
+      parts.regions[t % 3 == 2 ? 1 : 0].area += surface.area(t);
     }
     const Index slit = 2, beyond = surface.halfedges.twin[slit];  // from vertex kAround to vertex 0
     parts.open[std::size_t(slit)] = parts.open[std::size_t(beyond)] = 1;
-    for (MappedRegion& part : parts.patches) {
+    for (MappedRegion& part : parts.regions) {
       part.region.uv = rolled_out(part.region.faces);
       part.is_sound =
           test_parameterization(surface, parts.open, {.most_excess = 1}, part.region).verdict ==
@@ -80,15 +80,15 @@ Index glued_edges(const Can& can) {
 
 TEST(HangSmall, HangsALidOnOneEdgeWhereItFitsNoOtherWay) {
   Can can(60);
-  ASSERT_LT(can.parts.patches[1].area, kSmallRegion);
-  for (const MappedRegion& part : can.parts.patches) ASSERT_TRUE(part.is_sound);
+  ASSERT_LT(can.parts.regions[1].area, kSmallRegion);
+  for (const MappedRegion& part : can.parts.regions) ASSERT_TRUE(part.is_sound);
   SerialExecutor serial;
   ASSERT_EQ(
-      merge_patches({can.surface}, Joiner(can.surface), can.parts, kFlat, serial).patches.size(),
+      merge_regions({can.surface}, Joiner(can.surface), can.parts, kFlat, serial).regions.size(),
       2U);
   attach_small_charts({can.surface}, kFlat, can.parts);
-  ASSERT_EQ(can.parts.patches.size(), 1U);
-  MappedRegion& whole = can.parts.patches[0];
+  ASSERT_EQ(can.parts.regions.size(), 1U);
+  MappedRegion& whole = can.parts.regions[0];
   EXPECT_EQ(whole.region.faces.size(), can.surface.mesh.faces.size());
   EXPECT_NEAR(whole.area, 1, 1e-9);
   EXPECT_TRUE(whole.is_sound);
@@ -102,16 +102,16 @@ TEST(HangSmall, HangsALidOnOneEdgeWhereItFitsNoOtherWay) {
 TEST(HangSmall, GluesMoreOfTheBorderWhereDistortionMayBeSpent) {
   Can can(60);
   attach_small_charts({can.surface}, kRules, can.parts);
-  ASSERT_EQ(can.parts.patches.size(), 1U);
+  ASSERT_EQ(can.parts.regions.size(), 1U);
   EXPECT_GT(glued_edges(can), 1);
-  EXPECT_LE(can.parts.patches[0].excess.worst(), kRules.budget);
+  EXPECT_LE(can.parts.regions[0].excess.worst(), kRules.budget);
 }
 
 TEST(HangSmall, LeavesALargeRegionAChart) {
   Can can(5);
-  ASSERT_GT(can.parts.patches[1].area, kSmallRegion);
+  ASSERT_GT(can.parts.regions[1].area, kSmallRegion);
   attach_small_charts({can.surface}, kRules, can.parts);
-  EXPECT_EQ(can.parts.patches.size(), 2U);
+  EXPECT_EQ(can.parts.regions.size(), 2U);
 }
 
 }  // namespace

@@ -37,8 +37,8 @@ TEST(Bisect, CutsARingAcrossWhereItIsFarthestFromItsEnds) {
   const SegmentationMesh surface = open_ring();
   const auto cut = bisect({surface}, whole(surface), 0);
   ASSERT_TRUE(cut);
-  ASSERT_EQ(cut->patches.size(), 2U);
-  for (const MappedRegion& half : cut->patches) {
+  ASSERT_EQ(cut->regions.size(), 2U);
+  for (const MappedRegion& half : cut->regions) {
     EXPECT_TRUE(half.is_sound);
     EXPECT_NEAR(half.area, 0.5, 0.02);
     EXPECT_NEAR(half.excess.worst(), 0, 1e-9);
@@ -49,7 +49,7 @@ TEST(Bisect, CutsARingAcrossWhereItIsFarthestFromItsEnds) {
     const double share = above / double(half.region.faces.size());
     EXPECT_TRUE(share < 0.05 || share > 0.95) << share;
   }
-  EXPECT_EQ(cut->patches[0].region.faces.size() + cut->patches[1].region.faces.size(),
+  EXPECT_EQ(cut->regions[0].region.faces.size() + cut->regions[1].region.faces.size(),
             std::size_t(surface.face_count()));
 }
 

@@ -18,20 +18,20 @@ struct Strip {
     surface = make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
     const double middle = surface.mesh.positions[16].x();
     whole = halves = {{}, std::vector<char>(surface.length.size(), 0)};
-    whole.patches.resize(1);
-    halves.patches.resize(2);
+    whole.regions.resize(1);
+    halves.regions.resize(2);
     for (Index t = 0; t < surface.face_count(); ++t) {
       double x = 0;
       for (const Index v : surface.mesh.faces[std::size_t(t)])
         x += surface.mesh.positions[std::size_t(v)].x() / 3;
-      whole.patches[0].region.faces.push_back(t);
-      halves.patches[x < middle ? 0 : 1].region.faces.push_back(t);
+      whole.regions[0].region.faces.push_back(t);
+      halves.regions[x < middle ? 0 : 1].region.faces.push_back(t);
     }
     for (Partition* own : {&whole, &halves})
-      for (MappedRegion& patch : own->patches)
-        patch.region.uv = projected(surface, patch.region.faces);
-    whole.patches[0].area = 1;
-    for (MappedRegion& half : halves.patches) half.area = 0.5;
+      for (MappedRegion& region : own->regions)
+        region.region.uv = projected(surface, region.region.faces);
+    whole.regions[0].area = 1;
+    for (MappedRegion& half : halves.regions) half.area = 0.5;
   }
 
   [[nodiscard]] PartitionCost cost(CostRules rules) const {
@@ -69,7 +69,7 @@ TEST(PartitionCost, TakesLessForACreaseButTellsItsLength) {
 
 TEST(PartitionCost, TakesLessForASmallChart) {
   Strip strip;
-  strip.halves.patches[1].area = 0.9 * kSmallRegion;
+  strip.halves.regions[1].area = 0.9 * kSmallRegion;
   const CostRules rules{.small_chart = 0.05, .wanted_fill = 0.1};
   EXPECT_NEAR(strip.cost(rules).seams, 0.25 + 0.15 + 0.05, 1e-5);
 }

@@ -48,12 +48,12 @@ Vec3 middle_of(const SegmentationMesh& surface, Index t) {
 
 /// With the maps that come from those of the regions.
 void map(const SegmentationMesh& surface, Partition& parts) {
-  for (MappedRegion& patch : parts.patches) {
-    for (const Index t : patch.region.faces) patch.area += surface.area(t);
+  for (MappedRegion& region : parts.regions) {
+    for (const Index t : region.region.faces) region.area += surface.area(t);
     const TestRules rules{.most_excess = 1e9};
-    const TestResult result = test_parameterization(surface, parts.open, rules, patch.region);
-    patch.is_sound = result.verdict == Verdict::sound;
-    patch.excess = result.excess;
+    const TestResult result = test_parameterization(surface, parts.open, rules, region.region);
+    region.is_sound = result.verdict == Verdict::sound;
+    region.excess = result.excess;
   }
 }
 
@@ -63,11 +63,11 @@ Partition parted(const SegmentationMesh& surface, Label label) {
   Partition parts{{}, std::vector<char>(surface.length.size(), 0)};
   for (Index t = 0; t < surface.face_count(); ++t) {
     const auto k = std::size_t(label(middle_of(surface, t)));
-    if (parts.patches.size() <= k) parts.patches.resize(k + 1);
-    parts.patches[k].region.faces.push_back(t);
+    if (parts.regions.size() <= k) parts.regions.resize(k + 1);
+    parts.regions[k].region.faces.push_back(t);
   }
-  for (MappedRegion& patch : parts.patches)
-    patch.region.uv = projected(surface, patch.region.faces);
+  for (MappedRegion& region : parts.regions)
+    region.region.uv = projected(surface, region.region.faces);
   map(surface, parts);
   return parts;
 }
@@ -78,9 +78,9 @@ double zigzag(double x) {
 
 void expect_whole_and_sound(const SegmentationMesh& surface, const Partition& partition) {
   std::vector<int> seen(surface.mesh.faces.size(), 0);
-  for (const MappedRegion& patch : partition.patches) {
-    for (const Index t : patch.region.faces) ++seen[std::size_t(t)];
-    Region again = patch.region;
+  for (const MappedRegion& region : partition.regions) {
+    for (const Index t : region.region.faces) ++seen[std::size_t(t)];
+    Region again = region.region;
     const TestRules rules{.most_excess = 1e9};
     EXPECT_EQ(test_parameterization(surface, partition.open, rules, again).verdict, Verdict::sound);
   }
@@ -146,7 +146,7 @@ TEST(ShortenSeams, MakesAZigzagWithinARegionStraight) {
   }
   Partition slit{{{rolled_out(surface, is_left), {}, 0, true}}, open};
   map(surface, slit);
-  ASSERT_TRUE(slit.patches[0].is_sound);
+  ASSERT_TRUE(slit.regions[0].is_sound);
   const auto ends = [&] {
     const SeamGraph seams(surface, slit);
     std::vector<Index> found;
@@ -189,13 +189,13 @@ TEST(ShortenSeams, StaysNearWhereTheDistortionAsksForIt) {
     const double turn = std::atan2(m.y(), m.x());
     return std::hypot(m.x(), m.y()) < 0.3 + 0.02 * std::sin(24 * turn) ? 0 : 1;
   });
-  ASSERT_TRUE(dome.patches[0].is_sound && dome.patches[1].is_sound);
-  const auto excess = [&] { return (dome.patches[0].excess + dome.patches[1].excess).worst(); };
+  ASSERT_TRUE(dome.regions[0].is_sound && dome.regions[1].is_sound);
+  const auto excess = [&] { return (dome.regions[0].excess + dome.regions[1].excess).worst(); };
   const double before = seam_length(surface, dome), budget = 1.3 * excess(),
-               top = dome.patches[0].area;
+               top = dome.regions[0].area;
   shorten_seams({surface}, {.budget = budget, .cap = 1}, dome);
   EXPECT_LT(seam_length(surface, dome), 0.9 * before);
-  EXPECT_GT(dome.patches[0].area, 0.7 * top);
+  EXPECT_GT(dome.regions[0].area, 0.7 * top);
   EXPECT_LE(excess(), budget);
   expect_whole_and_sound(surface, dome);
 }
@@ -211,7 +211,7 @@ TEST(ShortenSeams, IsTheLastStepOfTheSearch) {
     Segments found = segment(surface, {.effort = Effort::fast}, serial);
     Partition partition{{}, std::move(found.open)};
     for (Region& region : found.regions)
-      partition.patches.push_back({std::move(region), {}, 0, {}});
+      partition.regions.push_back({std::move(region), {}, 0, {}});
     map(surface, partition);
     const double budget = kMarginOfExcess * (kDefaultDistortion - 2);
     before += seam_length(surface, partition);
@@ -222,7 +222,7 @@ TEST(ShortenSeams, IsTheLastStepOfTheSearch) {
 }
 
 double worst_mean(const Partition& partition) {
-  return std::ranges::max(partition.patches, {}, &MappedRegion::mean_excess).mean_excess();
+  return std::ranges::max(partition.regions, {}, &MappedRegion::mean_excess).mean_excess();
 }
 
 TEST(ShortenSeams, GetsFartherPartByPart) {
@@ -235,7 +235,7 @@ TEST(ShortenSeams, GetsFartherPartByPart) {
         parted(surface, [](const Vec3& m) { return m.y() < zigzag(m.x() + 0.5) ? 0 : 1; });
     Partition parts = whole;
     ExcessDistortion all;
-    for (const MappedRegion& patch : whole.patches) all += patch.excess;
+    for (const MappedRegion& region : whole.regions) all += region.excess;
     const MergeSettings settings{.budget = all.worst(), .cap = 1e-3};
     const double most = std::max(settings.cap, worst_mean(whole));
     shorten_seams({surface}, settings, whole);
