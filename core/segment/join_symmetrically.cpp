@@ -57,20 +57,20 @@ class SymmetricPartition {
     std::vector<Index> region(surface_.rest.size(), -1);
     std::vector<const CornerUv*> map(surface_.rest.size());
     for (std::size_t k = 0; k < regions_.size(); k += 2)
-      for (std::size_t i = 0; i < regions_[k].region.faces.size(); ++i) {
-        const Index t = regions_[k].region.faces[i];
+      for (std::size_t i = 0; i < regions_[k].faces.size(); ++i) {
+        const Index t = regions_[k].faces[i];
         region[t] = static_cast<Index>(k);
-        map[t] = &regions_[k].region.uv[i];
+        map[t] = &regions_[k].uv[i];
       }
     const std::vector<Index> sources = joined_sources(region);
     for (Index t = 0; t < surface_.face_count(); ++t)
       if (const Index source = sources[t]; source >= 0) {
-        Region& image = regions_[region[source] + 1].region;
+        Region& image = regions_[region[source] + 1];
         image.faces.push_back(t);
         image.uv.push_back(reflected_map(mirror_, surface_.mesh, {source, t}, *map[source]));
       }
     for (std::size_t k = 1; k < regions_.size(); k += 2)
-      regions_[k] = tested(std::move(regions_[k].region));
+      regions_[k] = tested(std::move(regions_[k]));
   }
 
   /// Joins regions with their images, then pairs of images with what they touch. Regions of most
@@ -88,18 +88,18 @@ class SymmetricPartition {
 
   [[nodiscard]] std::size_t count() const {
     return static_cast<std::size_t>(std::ranges::count_if(
-        regions_, [](const MappedRegion& own) { return !own.region.faces.empty(); }));
+        regions_, [](const MappedRegion& own) { return !own.faces.empty(); }));
   }
 
   Segments segments() {
-    std::erase_if(regions_, [](const MappedRegion& own) { return own.region.faces.empty(); });
+    std::erase_if(regions_, [](const MappedRegion& own) { return own.faces.empty(); });
     Partition partition{std::move(regions_), std::move(open_)};
     Segments segments{.regions = {},
                       .open = {},
                       .excess = total_excess(partition.regions),
                       .seam_length = search::seam_length(surface_, partition)};
     segments.open = std::move(partition.open);
-    for (MappedRegion& own : partition.regions) segments.regions.push_back(std::move(own.region));
+    for (MappedRegion& own : partition.regions) segments.regions.push_back(std::move(own));
     return segments;
   }
 
@@ -140,16 +140,15 @@ class SymmetricPartition {
 
   /// A region with the map that segmentation gave it.
   [[nodiscard]] MappedRegion sound(Region region) const {
-    MappedRegion own;
+    MappedRegion own{std::move(region)};
     measure::DistortionSums sums;
     const std::array<Triangle, 1> corners{{{0, 1, 2}}};
-    for (std::size_t k = 0; k < region.faces.size(); ++k) {
-      const Index t = region.faces[k];
+    for (std::size_t k = 0; k < own.faces.size(); ++k) {
+      const Index t = own.faces[k];
       own.area += surface_.area(t);
-      sums += measure::distortion_sums(std::span(&surface_.rest[t], 1), corners, region.uv[k]);
+      sums += measure::distortion_sums(std::span(&surface_.rest[t], 1), corners, own.uv[k]);
     }
     own.excess = excess_of(sums);
-    own.region = std::move(region);
     own.is_sound = true;
     return own;
   }
@@ -206,7 +205,7 @@ class SymmetricPartition {
     std::ranges::sort(order);
     for (const auto& [length, pair] : order) {
       throw_if_cancelled(stop_);
-      if (!regions_[pair.first].region.faces.empty() && !regions_[pair.second].region.faces.empty())
+      if (!regions_[pair.first].faces.empty() && !regions_[pair.second].faces.empty())
         join(pair.first, pair.second);
     }
   }

@@ -134,7 +134,7 @@ Segments SurfaceSegmentation::segments_of(Partition best) const {
                     .excess = total_excess(best.regions),
                     .seam_length = search::seam_length(surface_, best)};
   segments.open = std::move(best.open);
-  for (MappedRegion& region : best.regions) segments.regions.push_back(std::move(region.region));
+  for (MappedRegion& region : best.regions) segments.regions.push_back(std::move(region));
   return segments;
 }
 

@@ -59,15 +59,14 @@ bool is_small_beside(const Region& b, const Region& a) {
 }
 
 MappedRegion unite(const MappedRegion& a, const MappedRegion& b, Region laid) {
-  MappedRegion both;
-  both.region = std::move(laid);
+  MappedRegion both{std::move(laid)};
   both.area = a.area + b.area;
   const double added = a.area_added + b.area;
-  if (added > kMostAdded * both.area || !is_small_beside(b.region, a.region) ||
-      2 * moving_count(b.region.faces.size()) > both.region.faces.size())
+  if (added > kMostAdded * both.area || !is_small_beside(b, a) ||
+      2 * moving_count(b.faces.size()) > both.faces.size())
     return both;
   both.area_added = added;
-  both.region.mapped = a.region.faces.size();
+  both.mapped = a.faces.size();
   return both;
 }
 
@@ -112,8 +111,8 @@ std::vector<Index> Joiner::slit_of(std::span<const Index> border) const {
 
 Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
                     double cap, const TestRules& trial) const {
-  if (is_small_beside(a.region, b.region)) return join(b, a, open, cap, trial);
-  const RegionPair pair(surface_, a.region, b.region);
+  if (is_small_beside(a, b)) return join(b, a, open, cap, trial);
+  const RegionPair pair(surface_, a, b);
   const std::vector<Index> common = pair.border(open);
   TestRules rules = trial;
   rules.most_excess = std::max(cap * (a.area + b.area), (a.excess + b.excess).worst());
@@ -124,7 +123,7 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
     joined.verdict = Verdict::flawed;
     if (is_hopeless(pair, placement, open, a.area + b.area, length_of(glued))) return;
     joined.region = unite(a, b, std::move(placement.both));
-    const TestResult result = test_parameterization(surface_, cut, rules, joined.region.region);
+    const TestResult result = test_parameterization(surface_, cut, rules, joined.region);
     joined.verdict = result.verdict;
     joined.region.excess = result.excess;
     joined.region.is_sound = result.verdict == Verdict::sound;

@@ -9,8 +9,7 @@
 namespace unwrapd::segment {
 
 /// A region with the map that it has so far.
-struct MappedRegion {
-  Region region = {};
+struct MappedRegion : Region {
   ExcessDistortion excess = {};  ///< of that map
   double area = 0;               ///< of the surface's 1
   double area_added = 0;         ///< of it, since all of it was last mapped

@@ -97,7 +97,7 @@ class Merging {
   void measure_borders() {
     std::vector<Index> owner(surface_.mesh.faces.size(), -1);
     for (std::size_t k = 0; k < regions_.size(); ++k)
-      for (const Index t : regions_[k].region.faces) owner[t] = static_cast<Index>(k);
+      for (const Index t : regions_[k].faces) owner[t] = static_cast<Index>(k);
     borders_.resize(regions_.size());
     perimeter_.assign(regions_.size(), 0);
     for (Index h = 0; h < static_cast<Index>(surface_.halfedges.twin.size()); ++h) {
@@ -143,8 +143,7 @@ class Merging {
   /// so that where one of them is made, the other no longer can be.
   [[nodiscard]] bool would_waste(const Union& u, const Union& v) const {
     for (const auto& [large, small] : {std::pair(u.a, u.b), std::pair(u.b, u.a)})
-      if ((large == v.a || large == v.b) &&
-          is_small_beside(regions_[small].region, regions_[large].region))
+      if ((large == v.a || large == v.b) && is_small_beside(regions_[small], regions_[large]))
         return true;
     return false;
   }
@@ -169,8 +168,7 @@ class Merging {
     throw_if_cancelled(context_.stop);
     for (Union& both : batch) {
       if (context_.progress != nullptr)
-        context_.progress->add(regions_[both.a].region.faces.size() +
-                               regions_[both.b].region.faces.size());
+        context_.progress->add(regions_[both.a].faces.size() + regions_[both.b].faces.size());
       judge(std::move(both));
     }
   }
@@ -182,7 +180,7 @@ class Merging {
     std::vector<char> open = open_;
     for (const Index h : joined.slit) open[h] = 1;
     UvMap points;
-    for (const auto& [from, to] : boundary_sides(surface_, open, region.region)) {
+    for (const auto& [from, to] : boundary_sides(surface_, open, region)) {
       points.push_back(from);
       points.push_back(to);
     }
@@ -280,7 +278,7 @@ Partition merge_regions(const MergeContext& context, const Joiner& joiner, Parti
 std::vector<Index> owners(const SegmentationMesh& surface, const Partition& partition) {
   std::vector<Index> owner(surface.mesh.faces.size());
   for (std::size_t k = 0; k < partition.regions.size(); ++k)
-    for (const Index t : partition.regions[k].region.faces) owner[t] = static_cast<Index>(k);
+    for (const Index t : partition.regions[k].faces) owner[t] = static_cast<Index>(k);
   return owner;
 }
 

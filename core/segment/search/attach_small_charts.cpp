@@ -40,7 +40,7 @@ class Attaching {
     for (const std::size_t k : order)
       if (partition_.regions[k].area < kSmallRegion) attach(static_cast<Index>(k));
     std::erase_if(partition_.regions,
-                  [](const MappedRegion& region) { return region.region.faces.empty(); });
+                  [](const MappedRegion& region) { return region.faces.empty(); });
   }
 
  private:
@@ -66,7 +66,7 @@ class Attaching {
   [[nodiscard]] std::vector<Stretch> stretches(Index k) const {
     std::vector<Index> sides;
     std::map<Index, Index> before;
-    for (const Index t : partition_.regions[k].region.faces)
+    for (const Index t : partition_.regions[k].faces)
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
         if (is_seam(h)) sides.push_back(h), before[next(h)] = h;
     std::map<Index, char> taken;
@@ -113,14 +113,14 @@ class Attaching {
     MappedRegion &own = partition_.regions[k], &other = partition_.regions[into];
     if (!own.is_sound || !other.is_sound) return false;
     std::vector<char> open = partition_.open;
-    for (const Index t : own.region.faces)
+    for (const Index t : own.faces)
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
         if (across(h) == into) open[h] = open[twin(h)] = 1;
     for (const Index h : edges) open[h] = open[twin(h)] = 0;
-    MappedRegion both = unite(other, own, beside(surface_, other.region, own.region, edges));
+    MappedRegion both = unite(other, own, beside(surface_, other, own, edges));
     both.is_sound = true;
     if (!remap(context_, settings_, open, own.excess + other.excess, both, total_)) return false;
-    for (const Index t : own.region.faces) owner_[t] = into;
+    for (const Index t : own.faces) owner_[t] = into;
     partition_.open = std::move(open);
     other = std::move(both);
     own = {};

@@ -78,22 +78,22 @@ class Halving {
 std::optional<Partition> bisect(const MergeContext& context, const Partition& partition,
                                 std::size_t k) {
   const SegmentationMesh& surface = context.surface;
-  const Region& whole = partition.regions[k].region;
+  const Region& whole = partition.regions[k];
   const std::vector<char> half = Halving(surface, partition, whole).find();
   std::array<MappedRegion, 2> parts;
   for (std::size_t f = 0; f < half.size(); ++f) {
     MappedRegion& part = parts[static_cast<std::size_t>(half[f])];
-    part.region.faces.push_back(whole.faces[f]);
-    part.region.uv.push_back(whole.uv[f]);
+    part.faces.push_back(whole.faces[f]);
+    part.uv.push_back(whole.uv[f]);
     part.area += surface.area(whole.faces[f]);
   }
   for (MappedRegion& part : parts) {
-    if (part.region.faces.empty()) return std::nullopt;
+    if (part.faces.empty()) return std::nullopt;
     const TestRules trial{.most_excess = std::numeric_limits<double>::infinity(),
                           .stop = context.stop,
                           .memory = context.failures};
-    const TestResult result = test_parameterization(surface, partition.open, trial, part.region);
-    if (context.progress != nullptr) context.progress->add(part.region.faces.size());
+    const TestResult result = test_parameterization(surface, partition.open, trial, part);
+    if (context.progress != nullptr) context.progress->add(part.faces.size());
     if (result.verdict != Verdict::sound) return std::nullopt;
     part.excess = result.excess;
     part.is_sound = true;

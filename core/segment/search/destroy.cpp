@@ -68,9 +68,9 @@ Destroyed destroy(const SegmentationMesh& surface, const Partition& from, const 
     if (loose[k] == 0) result.partition.regions.push_back(merged.regions[k]);
   result.whole = static_cast<Index>(result.partition.regions.size());
   for (const MappedRegion& region : from.regions) {
-    if (loose[owner[region.region.faces.front()]] == 0) continue;
+    if (loose[owner[region.faces.front()]] == 0) continue;
     result.partition.regions.push_back(region);
-    for (const Index t : region.region.faces)
+    for (const Index t : region.faces)
       for (Index h = 3 * t; h < 3 * t + 3; ++h) result.partition.open[h] = from.open[h];
   }
   return result;

@@ -164,14 +164,14 @@ std::vector<MappedRegion> map_regions(const MergeContext& context, std::vector<I
   std::vector<MappedRegion> regions(faces.size());
   const auto map = [&](std::size_t k) {
     MappedRegion& region = regions[k];
-    region.region.faces = std::move(faces[k]);
-    region.region.uv = projected(surface, region.region.faces);
+    region.faces = std::move(faces[k]);
+    region.uv = projected(surface, region.faces);
     const TestRules rules{.most_excess = std::numeric_limits<double>::infinity(),
                           .stop = context.stop};
-    const TestResult result = test_parameterization(surface, {}, rules, region.region);
+    const TestResult result = test_parameterization(surface, {}, rules, region);
     region.excess = result.excess;
     region.is_sound = result.verdict == Verdict::sound;
-    for (const Index t : region.region.faces) region.area += surface.area(t);
+    for (const Index t : region.faces) region.area += surface.area(t);
   };
   for (std::size_t first = 0; first < regions.size(); first += kRegionsAtOnce) {
     const std::size_t count = std::min(kRegionsAtOnce, regions.size() - first);
@@ -179,7 +179,7 @@ std::vector<MappedRegion> map_regions(const MergeContext& context, std::vector<I
                             [&](int block) { map(first + static_cast<std::size_t>(block)); });
     throw_if_cancelled(context.stop);
     std::size_t mapped = 0;
-    for (std::size_t k = first; k < first + count; ++k) mapped += regions[k].region.faces.size();
+    for (std::size_t k = first; k < first + count; ++k) mapped += regions[k].faces.size();
     context.progress->add(mapped);
   }
   return regions;
@@ -191,7 +191,7 @@ void split_unsound(const SegmentationMesh& surface, std::span<const MappedRegion
   const auto face_count = static_cast<Index>(label.size());
   for (const MappedRegion& region : regions) {
     if (region.is_sound) continue;
-    for (const Index t : region.region.faces) label[t] = face_count + finer[t];
+    for (const Index t : region.faces) label[t] = face_count + finer[t];
   }
   separate_labels(surface.halfedges, label);
 }

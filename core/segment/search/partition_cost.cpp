@@ -17,7 +17,7 @@ std::vector<charts::Outline> outlines(const SegmentationMesh& surface, const Par
                                       const std::vector<Index>& owner) {
   std::vector<charts::Outline> all(partition.regions.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const Region& region = partition.regions[k].region;
+    const Region& region = partition.regions[k];
     for (std::size_t f = 0; f < region.faces.size(); ++f)
       for (Index i = 0; i < 3; ++i) {
         const Index h = 3 * region.faces[f] + i, twin = surface.halfedges.twin[h];

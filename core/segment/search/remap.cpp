@@ -13,9 +13,9 @@ bool remap(const MergeContext& context, const MergeSettings& settings, std::span
   const TestRules trial{.most_excess = std::max(settings.cap * region.area, before.worst()),
                         .stop = context.stop,
                         .memory = context.failures};
-  const bool is_whole = region.region.mapped == 0;
-  const TestResult result = test_parameterization(context.surface, open, trial, region.region);
-  if (context.progress != nullptr) context.progress->add(region.region.faces.size());
+  const bool is_whole = region.mapped == 0;
+  const TestResult result = test_parameterization(context.surface, open, trial, region);
+  if (context.progress != nullptr) context.progress->add(region.faces.size());
   const ExcessDistortion after = total + result.excess - before;
   if (result.verdict != Verdict::sound || after.worst() > std::max(settings.budget, total.worst()))
     return false;

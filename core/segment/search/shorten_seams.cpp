@@ -103,11 +103,11 @@ class Shortening {
     MappedRegion& a = partition_.regions[seams_.owner(row.front())];
     MappedRegion& b = partition_.regions[seams_.owner(twin(row.front()))];
     auto sides = part_faces(row, path);
-    const std::size_t count = a.region.faces.size() + b.region.faces.size();
+    const std::size_t count = a.faces.size() + b.faces.size();
     if (sides[0].empty() || sides[0].size() + sides[1].size() != count) return false;
     Chain seen_from_b;
     for (const Index h : row) seen_from_b.push_back(twin(h));
-    const Region both = beside(surface_, a.region, b.region, seen_from_b);
+    const Region both = beside(surface_, a, b, seen_from_b);
     const double most = std::max({settings_.cap, a.mean_excess(), b.mean_excess()});
     std::array<MappedRegion, 2> now;
     ExcessDistortion after = total_ - a.excess - b.excess;
@@ -160,15 +160,14 @@ class Shortening {
     const Ranks rank(surface_.mesh.faces.size(), both.faces);
     MappedRegion region;
     for (const Index t : faces) {
-      region.region.uv.push_back(both.uv[rank[t]]);
+      region.uv.push_back(both.uv[rank[t]]);
       region.area += surface_.area(t);
     }
-    region.region.faces = std::move(faces);
+    region.faces = std::move(faces);
     const TestRules rules{
         .most_excess = most * region.area, .stop = context_.stop, .memory = context_.failures};
-    const TestResult result =
-        test_parameterization(surface_, partition_.open, rules, region.region);
-    if (context_.progress != nullptr) context_.progress->add(region.region.faces.size());
+    const TestResult result = test_parameterization(surface_, partition_.open, rules, region);
+    if (context_.progress != nullptr) context_.progress->add(region.faces.size());
     region.excess = result.excess;
     region.is_sound = result.verdict == Verdict::sound;
     return region;
@@ -180,7 +179,7 @@ class Shortening {
     MappedRegion now = old;
     set_open(slit, 1);
     set_open(path, 1);
-    now.region = with_pockets_moved(old.region, slit);
+    static_cast<Region&>(now) = with_pockets_moved(old, slit);
     set_open(slit, 0);
     set_open(path, 1);
     if (!remap(context_, settings_, partition_.open, old.excess, now, total_)) {

@@ -123,12 +123,12 @@ Partition slit_open(const SegmentationMesh& surface, IsSlit is_slit) {
                 surface.mesh.positions[std::size_t(end_of(surface.mesh.faces, h))]))
       whole.open[std::size_t(h)] = 1;
   MappedRegion& region = whole.regions.front();
-  for (Index t = 0; t < surface.face_count(); ++t) region.region.faces.push_back(t);
-  region.region.uv = projected(surface, region.region.faces);
+  for (Index t = 0; t < surface.face_count(); ++t) region.faces.push_back(t);
+  region.uv = projected(surface, region.faces);
   region.area = 1;
-  region.excess = test_parameterization(surface, whole.open, {.iterations = 40, .most_excess = 1},
-                                        region.region)
-                      .excess;
+  region.excess =
+      test_parameterization(surface, whole.open, {.iterations = 40, .most_excess = 1}, region)
+          .excess;
   region.is_sound = true;
   return whole;
 }
@@ -177,7 +177,7 @@ TEST(CloseSlits, ClosesOnesFromTheirTipAsFarAsEitherBoundGoesAndKeepsTheMapSound
       last = slit_length(surface, glued);
       const MappedRegion& region = glued.regions.front();
       EXPECT_LE(region.excess.worst(), std::max(bound, least)) << is_of_all;
-      Region again = region.region;
+      Region again = region;
       EXPECT_EQ(test_parameterization(surface, glued.open, {.most_excess = 1}, again).verdict,
                 Verdict::sound);
     }

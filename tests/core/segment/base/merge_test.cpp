@@ -23,11 +23,11 @@ Partition parted(const SegmentationMesh& surface, Label label) {
       middle += surface.mesh.positions[std::size_t(v)] / 3;
     const auto k = std::size_t(label(middle));
     if (parts.regions.size() <= k) parts.regions.resize(k + 1);
-    parts.regions[k].region.faces.push_back(t);
+    parts.regions[k].faces.push_back(t);
   }
   for (MappedRegion& region : parts.regions) {
-    region.region.uv = projected(surface, region.region.faces);
-    for (const Index t : region.region.faces) region.area += surface.area(t);
+    region.uv = projected(surface, region.faces);
+    for (const Index t : region.faces) region.area += surface.area(t);
     region.is_sound = true;
   }
   return parts;
@@ -125,7 +125,7 @@ TEST(Merge, DrawsLotsWhereItHasAWhim) {
         .budget = 0.02, .cap = 0.02, .noise = noise, .seed = seed, .enough = 6};
     for (const MappedRegion& region :
          merge_regions({surface}, Joiner(surface), squares, settings, serial).regions)
-      faces.push_back(region.region.faces);
+      faces.push_back(region.faces);
     return faces;
   };
   EXPECT_EQ(merged(0, 1), merged(0, 2));
@@ -204,8 +204,8 @@ Tube halved_tube(double height, const Vec3& offset = Vec3::Zero(), double scale 
       p *= unit;
     }
     MappedRegion& half = tube.halves[is_upper ? 0 : 1];
-    half.region.faces.push_back(t);
-    half.region.uv.push_back(uv);
+    half.faces.push_back(t);
+    half.uv.push_back(uv);
     half.area += tube.surface.area(t);
   }
   return tube;
@@ -234,7 +234,7 @@ TEST(Join, TriesAlongBothStretchesOnlyWhatMayMeetThere) {
   EXPECT_EQ(both.verdict, Verdict::sound);  // along one
   EXPECT_EQ(both.slit.size(), 2U * 17);
   const std::vector<char> open(tube.surface.length.size(), 0);
-  EXPECT_FALSE(failures.find(trial_key(open, {}, both.region.region), 1));
+  EXPECT_FALSE(failures.find(trial_key(open, {}, both.region), 1));
 }
 
 /// A flat ring, and a wall down from its inner edge, rolled out along its first line.
@@ -263,13 +263,13 @@ TEST(Join, TriesNoWallWithThePlateAroundIt) {
       open[std::size_t(h)] = is_slit ? 1 : 0;
     }
     MappedRegion& part = parts[is_wall ? 1 : 0];
-    part.region.faces.push_back(t);
-    part.region.uv.push_back(uv);
+    part.faces.push_back(t);
+    part.uv.push_back(uv);
     part.area += surface.area(t);
   }
   const Joined joined = Joiner(surface).join(parts[0], parts[1], open, 1, {});
   EXPECT_FALSE(joined.region.is_sound);
-  EXPECT_TRUE(joined.region.region.faces.empty());
+  EXPECT_TRUE(joined.region.faces.empty());
   EXPECT_TRUE(joined.slit.empty());  // the edge of a hole is one stretch
 }
 

@@ -34,16 +34,16 @@ struct Can {
     surface = make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
     parts = {std::vector<MappedRegion>(2), std::vector<char>(surface.length.size(), 0)};
     for (Index t = 0; t < surface.face_count(); ++t) {
-      Region& own = parts.regions[t % 3 == 2 ? 1 : 0].region;
+      Region& own = parts.regions[t % 3 == 2 ? 1 : 0];
       own.faces.push_back(t);
       parts.regions[t % 3 == 2 ? 1 : 0].area += surface.area(t);
     }
     const Index slit = 2, beyond = surface.halfedges.twin[slit];  // from vertex kAround to vertex 0
     parts.open[std::size_t(slit)] = parts.open[std::size_t(beyond)] = 1;
     for (MappedRegion& part : parts.regions) {
-      part.region.uv = rolled_out(part.region.faces);
+      part.uv = rolled_out(part.faces);
       part.is_sound =
-          test_parameterization(surface, parts.open, {.most_excess = 1}, part.region).verdict ==
+          test_parameterization(surface, parts.open, {.most_excess = 1}, part).verdict ==
           Verdict::sound;
     }
   }
@@ -89,14 +89,13 @@ TEST(HangSmall, HangsALidOnOneEdgeWhereItFitsNoOtherWay) {
   attach_small_charts({can.surface}, kFlat, can.parts);
   ASSERT_EQ(can.parts.regions.size(), 1U);
   MappedRegion& whole = can.parts.regions[0];
-  EXPECT_EQ(whole.region.faces.size(), can.surface.mesh.faces.size());
+  EXPECT_EQ(whole.faces.size(), can.surface.mesh.faces.size());
   EXPECT_NEAR(whole.area, 1, 1e-9);
   EXPECT_TRUE(whole.is_sound);
   EXPECT_LE(whole.excess.worst(), 1e-6);
   EXPECT_EQ(glued_edges(can), 1);
-  EXPECT_EQ(
-      test_parameterization(can.surface, can.parts.open, {.most_excess = 1}, whole.region).verdict,
-      Verdict::sound);
+  EXPECT_EQ(test_parameterization(can.surface, can.parts.open, {.most_excess = 1}, whole).verdict,
+            Verdict::sound);
 }
 
 TEST(HangSmall, GluesMoreOfTheBorderWhereDistortionMayBeSpent) {

@@ -26,8 +26,8 @@ SegmentationMesh open_ring() {
 
 Partition whole(const SegmentationMesh& surface) {
   MappedRegion all;
-  for (Index t = 0; t < surface.face_count(); ++t) all.region.faces.push_back(t);
-  all.region.uv = projected(surface, all.region.faces);
+  for (Index t = 0; t < surface.face_count(); ++t) all.faces.push_back(t);
+  all.uv = projected(surface, all.faces);
   all.area = 1;
   all.is_sound = true;
   return {{all}, std::vector<char>(surface.length.size(), 0)};
@@ -43,13 +43,13 @@ TEST(Bisect, CutsARingAcrossWhereItIsFarthestFromItsEnds) {
     EXPECT_NEAR(half.area, 0.5, 0.02);
     EXPECT_NEAR(half.excess.worst(), 0, 1e-9);
     double above = 0;
-    for (const Index t : half.region.faces)
+    for (const Index t : half.faces)
       for (const Index v : surface.mesh.faces[std::size_t(t)])
         above += surface.mesh.positions[std::size_t(v)].y() > 0 ? 1.0 / 3 : 0;
-    const double share = above / double(half.region.faces.size());
+    const double share = above / double(half.faces.size());
     EXPECT_TRUE(share < 0.05 || share > 0.95) << share;
   }
-  EXPECT_EQ(cut->regions[0].region.faces.size() + cut->regions[1].region.faces.size(),
+  EXPECT_EQ(cut->regions[0].faces.size() + cut->regions[1].faces.size(),
             std::size_t(surface.face_count()));
 }
 

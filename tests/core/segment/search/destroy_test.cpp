@@ -21,11 +21,11 @@ Partition in_rows(const SegmentationMesh& surface, Index size, char open) {
   for (Index t = 0; t < surface.face_count(); ++t) {
     if (t % size == 0) partition.regions.emplace_back();
     MappedRegion& region = partition.regions.back();
-    region.region.faces.push_back(t);
+    region.faces.push_back(t);
     region.area += surface.area(t);
   }
   for (MappedRegion& region : partition.regions) {
-    region.region.uv = projected(surface, region.region.faces);
+    region.uv = projected(surface, region.faces);
     region.is_sound = true;
   }
   return partition;
@@ -33,7 +33,7 @@ Partition in_rows(const SegmentationMesh& surface, Index size, char open) {
 
 std::set<std::vector<Index>> face_sets(std::span<const MappedRegion> regions) {
   std::set<std::vector<Index>> sets;
-  for (const MappedRegion& region : regions) sets.insert(region.region.faces);
+  for (const MappedRegion& region : regions) sets.insert(region.faces);
   return sets;
 }
 
@@ -53,7 +53,7 @@ TEST(Destroy, PartsFallBackToTheirFirstRegionsAndTheRestStaysWhole) {
     std::vector<int> owned(surface.mesh.faces.size(), 0);
     double area = 0;
     for (std::size_t k = 0; k < regions.size(); ++k)
-      for (const Index t : regions[k].region.faces) {
+      for (const Index t : regions[k].faces) {
         ++owned[t];
         if (k >= count) area += surface.area(t);
         EXPECT_EQ(loose.partition.open[3 * t], k < count ? 1 : 0);
@@ -74,9 +74,9 @@ TEST(Destroy, TakesApartTheLargeRatherThanTheSmall) {
   for (std::size_t half = merged.regions.size() / 2; merged.regions.size() > half;) {
     const MappedRegion last = std::move(merged.regions.back());
     merged.regions.pop_back();
-    Region& large = merged.regions.front().region;
-    large.faces.insert(large.faces.end(), last.region.faces.begin(), last.region.faces.end());
-    large.uv.insert(large.uv.end(), last.region.uv.begin(), last.region.uv.end());
+    Region& large = merged.regions.front();
+    large.faces.insert(large.faces.end(), last.faces.begin(), last.faces.end());
+    large.uv.insert(large.uv.end(), last.uv.begin(), last.uv.end());
     merged.regions.front().area += last.area;
   }
   const auto small = static_cast<Index>(merged.regions.size()) - 1;

@@ -24,12 +24,11 @@ struct Strip {
       double x = 0;
       for (const Index v : surface.mesh.faces[std::size_t(t)])
         x += surface.mesh.positions[std::size_t(v)].x() / 3;
-      whole.regions[0].region.faces.push_back(t);
-      halves.regions[x < middle ? 0 : 1].region.faces.push_back(t);
+      whole.regions[0].faces.push_back(t);
+      halves.regions[x < middle ? 0 : 1].faces.push_back(t);
     }
     for (Partition* own : {&whole, &halves})
-      for (MappedRegion& region : own->regions)
-        region.region.uv = projected(surface, region.region.faces);
+      for (MappedRegion& region : own->regions) region.uv = projected(surface, region.faces);
     whole.regions[0].area = 1;
     for (MappedRegion& half : halves.regions) half.area = 0.5;
   }

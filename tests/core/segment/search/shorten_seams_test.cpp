@@ -49,9 +49,9 @@ Vec3 middle_of(const SegmentationMesh& surface, Index t) {
 /// With the maps that come from those of the regions.
 void map(const SegmentationMesh& surface, Partition& parts) {
   for (MappedRegion& region : parts.regions) {
-    for (const Index t : region.region.faces) region.area += surface.area(t);
+    for (const Index t : region.faces) region.area += surface.area(t);
     const TestRules rules{.most_excess = 1e9};
-    const TestResult result = test_parameterization(surface, parts.open, rules, region.region);
+    const TestResult result = test_parameterization(surface, parts.open, rules, region);
     region.is_sound = result.verdict == Verdict::sound;
     region.excess = result.excess;
   }
@@ -64,10 +64,9 @@ Partition parted(const SegmentationMesh& surface, Label label) {
   for (Index t = 0; t < surface.face_count(); ++t) {
     const auto k = std::size_t(label(middle_of(surface, t)));
     if (parts.regions.size() <= k) parts.regions.resize(k + 1);
-    parts.regions[k].region.faces.push_back(t);
+    parts.regions[k].faces.push_back(t);
   }
-  for (MappedRegion& region : parts.regions)
-    region.region.uv = projected(surface, region.region.faces);
+  for (MappedRegion& region : parts.regions) region.uv = projected(surface, region.faces);
   map(surface, parts);
   return parts;
 }
@@ -79,8 +78,8 @@ double zigzag(double x) {
 void expect_whole_and_sound(const SegmentationMesh& surface, const Partition& partition) {
   std::vector<int> seen(surface.mesh.faces.size(), 0);
   for (const MappedRegion& region : partition.regions) {
-    for (const Index t : region.region.faces) ++seen[std::size_t(t)];
-    Region again = region.region;
+    for (const Index t : region.faces) ++seen[std::size_t(t)];
+    Region again = region;
     const TestRules rules{.most_excess = 1e9};
     EXPECT_EQ(test_parameterization(surface, partition.open, rules, again).verdict, Verdict::sound);
   }
