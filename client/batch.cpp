@@ -115,7 +115,7 @@ void Batch::tell(const Row& row) const {
     } else {
       line["failure"] = row.failure;
     }
-    console_.out << line.dump(-1, ' ', false, api::Json::error_handler_t::replace) << std::endl;
+    console_.out << api::to_text(line) << std::endl;
   }
   if (console_.style != ProgressStyle::none)
     console_.err << "[" << ended_ << "/" << rows_.size() << "] "
