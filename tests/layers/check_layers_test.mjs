@@ -24,6 +24,7 @@ test("rooms include the rooms before them only", () => {
   refuses("core/segment/search/bisect.cpp", '"core/segment/segment.hpp"');
   refuses("server/blobs/blob_store.cpp", '"server/database/database.hpp"');
   refuses("server/database/schema.cpp", '"server/store/job_rows.hpp"');
+  refuses("server/routes/job_routes.cpp", '"server/database/database.hpp"');
   refuses("server/http/http.cpp", '"server/store/job_store.hpp"');
   refuses("server/store/job_store.cpp", '"server/http/http.hpp"');
   refuses("server/jobs/job_queue.cpp", '"server/routes/job_routes.hpp"');

@@ -7,7 +7,8 @@ const TERMS = ["core/base", "core/mesh", "core/types"];
 const SOLVING = [...TERMS, "core/linear", "core/measure", "core/solve/base"];
 const ASSET = [...TERMS, "core/asset/base"];
 const DOCUMENT = [...ASSET, "core/asset/gltf"];
-const STORED = ["core/base", "api", "server/base", "server/database", "server/blobs", "server/store"];
+const SERVER = ["core/base", "api", "server/base"];
+const STORED = [...SERVER, "server/blobs", "server/store"];
 
 /** Folder, duty, the rooms that it may include. */
 export const ROOMS = [
@@ -53,18 +54,18 @@ export const ROOMS = [
   ["server/bucket", "objects in a bucket that speaks the API of Amazon S3", ["core/base", "server/base", "server/outbound"]],
   ["server/database", "SQL on SQLite or PostgreSQL, and the tables of the store", ["core/base", "api", "server/base"]],
   ["server/blobs", "the files of jobs, on disk, shared or in a bucket, and the room that they take", ["core/base", "api", "server/base", "server/bucket"]],
-  ["server/store", "jobs and meshes: their rows with their files, quotas, sweeping", ["core/asset", "core/asset/base", ...STORED]],
+  ["server/store", "jobs and meshes: their rows with their files, quotas, sweeping", ["core/asset", "core/asset/base", ...STORED, "server/database"]],
   ["server/work", "one job from input bytes to output bytes, in its own process", [...TERMS, ...STORED, "core", "core/asset", "core/figure", "core/pipeline"]],
   ["server/jobs", "the queue, fair turns, workers, events", [...STORED, "server/http", "server/work"]],
-  ["server/access", "API keys, signed links, upload tickets", [...STORED, "core/figure", "server/http", "server/jobs"]],
-  ["server/webhooks", "signed calls when a job ends", [...STORED, "server/http", "server/outbound"]],
+  ["server/access", "API keys, signed links, upload tickets", [...SERVER, "server/database", "core/figure", "server/http", "server/jobs"]],
+  ["server/webhooks", "signed calls when a job ends", [...SERVER, "server/database", "server/http", "server/outbound"]],
   ["server/sources", "meshes read from addresses that jobs name", ["core/base", "api", "server/base", "server/http", "server/outbound"]],
-  ["server/backup", "backup, restore and check of a data directory", [...STORED, "server/access"]],
+  ["server/backup", "backup, restore and check of a data directory", [...STORED, "server/database", "server/access"]],
   ["server/results", "results and pictures, made on request", [...STORED, "core/asset", "server/http", "server/work", "server/jobs"]],
-  ["server/config", "options, variables and the configuration file", [...STORED, "server/bucket", "server/http", "server/work", "server/access", "server/outbound", "server/webhooks", "server/sources", "server/results"]],
+  ["server/config", "options, variables and the configuration file", [...SERVER, "server/database", "server/blobs", "server/bucket", "server/http", "server/work", "server/access", "server/outbound", "server/webhooks", "server/sources", "server/results"]],
   ["server/uploads", "meshes and jobs as they arrive", [...STORED, "server/http", "server/jobs", "server/outbound", "server/webhooks", "server/sources", "server/results"]],
   ["server/routes", "the handlers of all paths", [...STORED, "client/web", "server/http", "server/work", "server/jobs", "server/access", "server/results", "server/uploads"]],
-  ["server", "the program `unwrapd`", [...STORED, "server/bucket", "server/http", "server/work", "server/jobs", "server/access", "server/webhooks", "server/sources", "server/backup", "server/config", "server/routes"]],
+  ["server", "the program `unwrapd`", [...STORED, "server/database", "server/bucket", "server/http", "server/work", "server/jobs", "server/access", "server/webhooks", "server/sources", "server/backup", "server/config", "server/routes"]],
   ["client", "the program `unwrap`: uploads, follows, downloads", ["core/base", "api", "server"]],
 ].map(([folder, duty, includes]) => ({ folder, duty, includes: [...new Set(includes)].filter((room) => room !== folder) }));
 
