@@ -24,6 +24,7 @@ const [leftOut, ctestArguments] =
   others[0] === '--except' ? [expressionsIn(others[1]), others.slice(2)] : [[], others];
 const scratch = mkdtempSync(join(tmpdir(), 'batches-'));
 const counts = { passed: 0, failed: 0, skipped: 0 };
+let leftOutCount = 0;
 const failed = [];
 const seconds = [];  // [seconds, name] of each
 
@@ -37,8 +38,9 @@ function listedTests() {
   const listed = execFileSync(
     'ctest', ['--test-dir', folder, '--show-only=json-v1', ...ctestArguments],
     { encoding: 'utf8', maxBuffer: 1 << 28 });
-  const kept = JSON.parse(listed).tests.filter(
-    ({ name }) => !leftOut.some((expression) => expression.test(name)));
+  const all = JSON.parse(listed).tests;
+  const kept = all.filter(({ name }) => !leftOut.some((expression) => expression.test(name)));
+  leftOutCount = all.length - kept.length;
   return kept.map(({ name, command, properties }) => {
     const [program, ...rest] = command ?? [];
     const filter = rest.find((argument) => argument.startsWith('--gtest_filter='));
@@ -188,6 +190,7 @@ const worker = async () => {
 await Promise.all(Array.from({ length: Number(jobs) }, worker));
 rmSync(scratch, { recursive: true });
 console.log(`${batches.length} processes for ${tests.length} tests`);
+if (leftOutCount > 0) console.log(`${leftOutCount} tests are left out by ${others[1]}`);
 for (const [time, name] of seconds.sort(([a], [b]) => b - a).slice(0, kSlowestTold))
   console.log(`${time.toFixed(1)} s: ${name}`);
 for (const name of failed) console.log(`FAILED: ${name}`);

@@ -63,9 +63,10 @@ test('other tests run by themselves, and a program that is missing fails', () =>
 });
 
 test('what a list names is left out, by the beginning of a name', () => {
-  const { last, failed } = run(['Well', 'WellToo', 'InFailure', 'Skipped'], [],
+  const { last, failed, stdout } = run(['Well', 'WellToo', 'InFailure', 'Skipped'], [],
     '# a remark\nEnds\\.(In|Sk)\nWell\n');
   assert.equal(last, '2 passed, 0 failed, 0 skipped');
+  assert.match(stdout, /^2 tests are left out by .*except[.]txt$/m);
   assert.deepEqual(failed, []);
 });
 

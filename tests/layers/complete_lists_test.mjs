@@ -1,6 +1,7 @@
 // Options, methods and formats are listed by name in files that no compiler compares. A new one must
 // stand in all of them.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import test from "node:test";
@@ -60,6 +61,16 @@ for (const [what, names, file, howNamed] of LISTS)
       return named instanceof RegExp ? named.test(text) : text.includes(named);
     };
     assert.deepEqual(names.filter((name) => !isThere(name)), []);
+  });
+
+const SUITES = [...execFileSync("git", ["grep", "-hE", "^TEST(_F|_P)?[(]", "--", "tests"], { cwd: ROOT, encoding: "utf8" })
+  .matchAll(/^TEST(?:_F|_P)?\((\w+),/gm)].map(([, suite]) => suite);
+
+// A test that has another name now would be run again where it takes too long, and nobody would know.
+for (const file of ["left_to_all.txt", "compared_in_release.txt"])
+  test(`tests/batches/${file} names suites that there are`, () => {
+    const named = read(`tests/batches/${file}`).match(/^[A-Z][A-Za-z/]+/gm).map((name) => name.split("/").at(-1));
+    assert.deepEqual(named.filter((name) => !SUITES.some((suite) => suite.startsWith(name))), []);
   });
 
 test("the lists are not empty", () => {
