@@ -142,8 +142,9 @@ bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
   for (Vec2& u : before) u *= unit / disk.unit;
   if (is_bounded && rises_too_far(disk, rules, uv, before)) return false;
   for (Vec2& u : uv) u *= disk.unit / unit;
+  if (!overlaps_of(*part.chart, uv, intent.stop).empty()) return false;
   part.uv = std::move(uv);
-  return overlaps_of(*part.chart, part.uv, intent.stop).empty();
+  return true;
 }
 
 /// Parts the sheets of a part that lie on each other, in its map or in a new one.
@@ -271,7 +272,7 @@ Written keep_on_page(const charts::Chart& chart, const GuaranteeRules& rules, Uv
         "written");
   const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv, rules.intent.stop).size());
   if (overlaps == 0 || rules.guarantee != Guarantee::bijective) return {0, overlaps};
-  if (!separate_rounded_boundaries(chart, rules.intent.constrained, page_uv))
+  if (!separate_rounded_boundaries(chart, rules.intent.constrained, page_uv, rules.intent.stop))
     fail("two triangles are too close to each other for the precision in which UVs are written");
   return {0, 0};
 }

@@ -37,9 +37,9 @@ std::vector<char> movable_vertices(const charts::Chart& chart,
 
 /// The movable vertices of overlapping triangles.
 std::vector<char> pressed(const charts::Chart& chart, const std::vector<char>& movable,
-                          const UvMap& uv) {
+                          const UvMap& uv, const std::stop_token& stop) {
   std::vector<char> in_conflict(movable.size(), 0);
-  for (const auto& pair : measure::overlapping_pairs(chart.mesh.faces, uv, kMostGapPairs))
+  for (const auto& pair : measure::overlapping_pairs(chart.mesh.faces, uv, kMostGapPairs, stop))
     for (Index t : pair)
       for (Index v : chart.mesh.faces[index(t)]) in_conflict[index(v)] = movable[index(v)];
   return in_conflict;
@@ -70,23 +70,23 @@ Vec2 on_lattice(const Vec2& u, double step) {
 }  // namespace
 
 bool separate_rounded_boundaries(const charts::Chart& chart, const std::vector<char>& constrained,
-                                 UvMap& page_uv) {
+                                 UvMap& page_uv, const std::stop_token& stop) {
   const double step = uv_step(page_uv);
   const linear::VertexCorners corners =
       linear::vertex_corners(chart.mesh.faces, chart.mesh.vertex_count());
   const std::vector<char> movable = movable_vertices(chart, constrained);
   UvMap uv = page_uv;
   for (double distance : kDistances) {
-    const std::vector<char> moves = pressed(chart, movable, uv);
+    const std::vector<char> moves = pressed(chart, movable, uv, stop);
     if (std::ranges::find(moves, 1) == moves.end()) break;
     const UvMap before = uv;
     for (std::size_t v = 0; v < moves.size(); ++v)
       if (moves[v] != 0)
         uv[v] = on_lattice(
             drawn_back(before[v], middle(chart, corners, v, before), distance * step), step);
-    if (!measure::flipped_faces(chart.mesh.faces, uv).empty()) return false;
+    if (!measure::flipped_faces(chart.mesh.faces, uv, stop).empty()) return false;
   }
-  if (!measure::overlapping_pairs(chart.mesh.faces, uv, 1).empty()) return false;
+  if (!measure::overlapping_pairs(chart.mesh.faces, uv, 1, stop).empty()) return false;
   page_uv = std::move(uv);
   return true;
 }

@@ -11,8 +11,8 @@ namespace unwrapd::guarantee {
 /// rounding closed a gap between two stretches of boundary, both draw back, by a few steps of
 /// uv_step() and then by more, up to some hundred; vertices with constrained[v] (one a vertex, or
 /// empty) stay. Returns whether nothing overlaps in the end; no triangle is flipped by this, and
-/// where it is false nothing has moved.
+/// where it is false nothing has moved. Throws Error{cancelled}.
 bool separate_rounded_boundaries(const charts::Chart& chart, const std::vector<char>& constrained,
-                                 UvMap& page_uv);
+                                 UvMap& page_uv, const std::stop_token& stop = {});
 
 }  // namespace unwrapd::guarantee

@@ -73,6 +73,7 @@ ChartReport next_report(ByteUnpacker& bytes) {
   report.iterations = next_count(bytes);
   report.stop_reason = next_of(bytes, StopReason::neighbour);
   report.energy = bytes.next_list<double>();
+  require_sound(!report.energy.empty());
   report.overlaps = next_optional<Index>(bytes);
   Mending& mending = report.mending;
   mending.flips = next_count(bytes);

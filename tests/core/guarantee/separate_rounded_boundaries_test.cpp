@@ -10,6 +10,7 @@
 #include "core/guarantee/quantize_uvs.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
+#include "tests/api/error_of.hpp"
 #include "tests/core/solve/disk_of.hpp"
 
 namespace unwrapd::guarantee {
@@ -83,6 +84,16 @@ TEST(SeparateRoundedBoundaries, OpensWhatRoundingClosed) {
     for (std::size_t v = 0; v < uv.size(); ++v) EXPECT_LT((uv[v] - apart[v]).norm(), 8 * kUvStep);
   }
   EXPECT_GT(closed, 10);  // else there is nothing to test
+}
+
+TEST(SeparateRoundedBoundaries, IsCancelled) {
+  const OwnedDisk owned = disk_of(fork(7, 5));
+  UvMap uv = turned(*owned.chart, 0.03);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(
+      error_of([&] { separate_rounded_boundaries(*owned.chart, {}, uv, stop.get_token()); }).code(),
+      ErrorCode::cancelled);
 }
 
 TEST(SeparateRoundedBoundaries, MovesNothingWhereVerticesAreHeldAndSaysSo) {
