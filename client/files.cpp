@@ -16,7 +16,9 @@ std::uintmax_t file_bytes(const fs::path& path) {
     throw Failure(ExitCode::file, "There is no file " + path.string() + "; check its name.");
   if (!fs::is_regular_file(path, error))
     throw Failure(ExitCode::file, path.string() + " is not a file; name a mesh file.");
-  return fs::file_size(path);
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error) throw Failure(ExitCode::file, path.string() + " cannot be read: " + error.message());
+  return bytes;
 }
 
 std::string read_file(const fs::path& path) {

@@ -194,15 +194,17 @@ std::shared_ptr<JobFeed> EventFeed::find(std::string_view job) const {
 
 std::shared_ptr<JobFeed> EventFeed::find_or_follow(const store::JobRecord& job) {
   std::shared_ptr<JobFeed> feed;
+  bool is_new = false;
   {
     const std::lock_guard lock(mutex_);
     const auto found = feeds_.find(job.id);
-    if (found != feeds_.end()) return found->second;
-    if (!share_ || api::is_final(job.state)) return nullptr;
-    feed = make(job.id, 0);
-    feed->follow(true);
+    is_new = found == feeds_.end();
+    if (!is_new && !found->second->is_following()) return found->second;
+    if (is_new && (!share_ || api::is_final(job.state))) return nullptr;
+    feed = is_new ? make(job.id, 0) : found->second;
+    if (is_new) feed->follow(true);
   }
-  found_(job.id);
+  if (is_new) found_(job.id);
   feed->wait_caught_up(kTimeToCatchUp);
   return feed;
 }

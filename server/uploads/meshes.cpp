@@ -96,8 +96,8 @@ SentMesh Meshes::settle(const http::Request& request, store::MeshRecord mesh,
     return {.mesh = find(mesh.owner, mesh.sha256), .is_new = false};
   }
   const std::int64_t most = request.caller.quota.max_bytes;
-  if (most > 0 && jobs_.usage(mesh.owner).stored_bytes + mesh.bytes > most)
-    throw quota_exceeded(most);
+  if (most > 0 && !known && jobs_.usage(mesh.owner).stored_bytes + mesh.bytes > most)
+    throw quota_exceeded(most);  // a damaged one has counted already
   blobs_.keep_upload(upload, mesh.id, {{std::string(blobs::kDocumentFile), mesh.sha256}});
   try {
     store_.put(mesh);

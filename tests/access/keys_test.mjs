@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { existsSync, readdirSync, statSync, writeFileSync } from "node:fs";
+import { chmodSync, existsSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 
@@ -174,6 +174,13 @@ test("a key's meshes are its own, and count once", async (t) => {
   const second = grid(29);
   const name = createHash("sha256").update(second).digest("hex");
   await refused(await put(mine, second, name), 507, "quota_exceeded");
+  for (const folder of readdirSync(join(data, "blobs")).filter((own) => own.startsWith("m_"))) {
+    const document = join(data, "blobs", folder, "document");
+    chmodSync(document, 0o600);
+    writeFileSync(document, mesh.toString().replace("v", "w"));
+  }
+  await refused(await job(mine, "asap"), 500, "storage_corrupt");
+  assert.equal((await put(mine)).status, 201, "a damaged one is replaced, whatever the quota");
   for (const answer of jobs) {
     const { id } = await answer.json();
     await mine.fetch(`/v1/jobs/${id}`, { method: "DELETE" });

@@ -22,7 +22,8 @@ def events_of(lines: Iterable[bytes]) -> Iterator[Event]:
         text = line.decode().rstrip("\r\n")
         name, _, value = text.partition(":")
         if name:  # a comment has none
-            fields[name] = value.removeprefix(" ")
+            value = value.removeprefix(" ")
+            fields[name] = f"{fields[name]}\n{value}" if name in fields else value
         elif not text and "event" in fields and "data" in fields:
             yield Event(fields["event"], json.loads(fields["data"]), fields.get("id"))
         if not text:

@@ -193,7 +193,8 @@ DONE = {**JOB, "state": "succeeded"}
 
 
 def frame(identity: int, name: str, data: object) -> bytes:
-    return f"id: {identity}\nevent: {name}\ndata: {json.dumps(data)}\n\n".encode()
+    lines = json.dumps(data, indent=1).replace("\n", "\ndata: ")  # as the standard allows
+    return f"id: {identity}\nevent: {name}\ndata: {lines}\n\n".encode()
 
 
 def busy(code: str, status: int) -> tuple[int, dict, bytes]:
@@ -234,7 +235,6 @@ class FakeServer(unittest.TestCase):
             do_GET = do_POST = answer
 
             def log_message(self, *_: object) -> None: ...
-
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         threading.Thread(target=server.serve_forever, daemon=True).start()
         try:

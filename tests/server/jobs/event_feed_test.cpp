@@ -7,6 +7,7 @@
 #include <poll.h>
 
 #include <atomic>
+#include <future>
 #include <thread>
 
 namespace unwrapd::server::jobs {
@@ -200,6 +201,26 @@ TEST_F(SharedFeeds, AReaderElsewhereGetsTheSameEvents) {
   EXPECT_TRUE(followed->read(0).end);
   EXPECT_EQ(followed->read(0).frames, feed->read(0).frames);
   EXPECT_THAT(there_.following(), IsEmpty()) << "it is over";
+}
+
+TEST_F(SharedFeeds, ASecondReaderGoesOnWhereItWas) {
+  const auto feed = here_.open("j_1", 0);
+  for (int k = 1; k <= 3; ++k) publish_iteration(*feed, k);
+  EventFeed slow;
+  std::promise<void> is_followed, may_answer;
+  slow.share_with([](const store::EventRow&) {},
+                  [&](const std::string& job) {
+                    is_followed.set_value();
+                    may_answer.get_future().wait();
+                    for (const store::EventRow& event : told_) slow.find(job)->append(event);
+                    slow.find(job)->set_caught_up();
+                  });
+  const std::jthread first([&] { slow.find_or_follow(running()); });
+  is_followed.get_future().wait();
+  auto second = std::async(std::launch::async, [&] { return slow.find_or_follow(running()); });
+  EXPECT_EQ(second.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout);
+  may_answer.set_value();
+  EXPECT_EQ(second.get()->resume_after(feed->newest()), feed->newest());
 }
 
 TEST_F(SharedFeeds, AnEventComesOnceAndNoneThatIsLate) {
