@@ -4,8 +4,9 @@
 #include "core/pack/mask.hpp"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 namespace unwrapd::pack {
@@ -52,28 +53,105 @@ class ByRow {
   std::vector<Item> item_;
 };
 
-/// The rows of a mask while it is built.
-struct Scan {
-  int width = 0, height = 0;
-  ByRow<Run> runs;
-  ByRow<Crossing> crossings;  ///< of the lines through the cells' middles
+/// The cells of one row, as bits.
+class RowBits {
+ public:
+  explicit RowBits(int width)
+      : words_(static_cast<std::size_t>((width + kBits - 1) / kBits), 0), first_(words_.size()) {}
+
+  void set(const Run& run) {
+    const auto first = static_cast<std::size_t>(run.begin / kBits);
+    const auto last = static_cast<std::size_t>((run.end - 1) / kBits);
+    const std::uint64_t from = ~std::uint64_t{0} << (run.begin % kBits);
+    const std::uint64_t to = ~std::uint64_t{0} >> (kBits - 1 - (run.end - 1) % kBits);
+    if (first == last) {
+      words_[first] |= from & to;
+    } else {
+      words_[first] |= from;
+      for (std::size_t w = first + 1; w < last; ++w) words_[w] = ~std::uint64_t{0};
+      words_[last] |= to;
+    }
+    first_ = std::min(first_, first);
+    end_ = std::max(end_, last + 1);
+  }
+
+  /// Appends the runs of cells as the next row, and clears them.
+  void move_to(Rows& rows) {
+    int begin = -1;
+    std::uint64_t before = 0;  // the last cell of the word before
+    for (std::size_t w = first_; w < end_; ++w) {
+      for (std::uint64_t ends = words_[w] ^ (words_[w] << 1 | before); ends != 0;
+           ends &= ends - 1) {
+        const int x = static_cast<int>(w) * kBits + std::countr_zero(ends);
+        if (begin >= 0) rows.runs.push_back({begin, x});
+        begin = begin >= 0 ? -1 : x;
+      }
+      before = words_[w] >> (kBits - 1);
+      words_[w] = 0;
+    }
+    if (begin >= 0) rows.runs.push_back({begin, static_cast<int>(end_) * kBits});
+    rows.first.push_back(static_cast<int>(rows.runs.size()));
+    first_ = words_.size();
+    end_ = 0;
+  }
+
+ private:
+  static constexpr int kBits = 64;
+
+  std::vector<std::uint64_t> words_;
+  std::size_t first_, end_ = 0;  ///< words in which there are cells
 };
 
-void touch(const Vec2& a, const Vec2& b, Scan& scan) {
-  const bool rises = b.y() >= a.y();
-  const Vec2 &low = rises ? a : b, &high = rises ? b : a;
-  const double slope = high.y() > low.y() ? (high.x() - low.x()) / (high.y() - low.y()) : 0;
-  for (int y = cell(low.y(), scan.height); y <= cell(high.y(), scan.height); ++y) {
-    const double from = std::max<double>(low.y(), y), to = std::min<double>(high.y(), y + 1);
-    const bool is_level = !(high.y() > low.y());
-    const double p = is_level ? low.x() : low.x() + (from - low.y()) * slope;
-    const double q = is_level ? high.x() : low.x() + (to - low.y()) * slope;
-    scan.runs.add(y, {cell(std::min(p, q), scan.width), cell(std::max(p, q), scan.width) + 1});
-    const double middle = y + 0.5;
-    if (low.y() <= middle && middle < high.y())
-      scan.crossings.add(y, {low.x() + (middle - low.y()) * slope, rises ? 1 : -1});
+/// The rows of a mask while it is built.
+class Scan {
+ public:
+  Scan(int width, int height)
+      : width_(width), height_(height), newest_(static_cast<std::size_t>(height)) {
+    runs.reserve(kUsuallyInARow * newest_.size());
+    crossings.reserve(kUsuallyInARow * newest_.size());
   }
-}
+
+  /// Most segments lie in one row and cross no middle.
+  void touch(const Vec2& a, const Vec2& b) {
+    const bool rises = b.y() >= a.y();
+    const Vec2 &low = rises ? a : b, &high = rises ? b : a;
+    const int first = cell(low.y(), height_), last = cell(high.y(), height_);
+    if (first == last) add_run(first, low.x(), high.x());
+    if (first == last && (low.y() > first + 0.5 || high.y() <= first + 0.5)) return;
+    const double slope = (high.x() - low.x()) / (high.y() - low.y());
+    for (int y = first; y <= last; ++y) {
+      const double from = std::max<double>(low.y(), y), to = std::min<double>(high.y(), y + 1);
+      if (first != last)
+        add_run(y, low.x() + (from - low.y()) * slope, low.x() + (to - low.y()) * slope);
+      const double middle = y + 0.5;
+      if (low.y() <= middle && middle < high.y())
+        crossings.add(y, {low.x() + (middle - low.y()) * slope, rises ? 1 : -1});
+    }
+  }
+
+  /// Called once, after the last segment; the number of rows.
+  std::size_t sort() {
+    runs.sort(newest_.size());
+    crossings.sort(newest_.size());
+    return newest_.size();
+  }
+
+  ByRow<Run> runs;
+  ByRow<Crossing> crossings;  ///< of the lines through the cells' middles
+
+ private:
+  /// The next segment often begins in the cells where the last one ended.
+  void add_run(int y, double p, double q) {
+    const Run run{cell(std::min(p, q), width_), cell(std::max(p, q), width_) + 1};
+    Run& newest = newest_[static_cast<std::size_t>(y)];
+    if (newest.begin <= run.begin && run.end <= newest.end) return;
+    newest = run;
+    runs.add(y, run);
+  }
+
+  int width_, height_;
+  std::vector<Run> newest_;  ///< of each row
+};
 
 /// By insertion where they are few: std::stable_sort takes memory for each row.
 void sort_by_x(std::span<Crossing> crossings) {
@@ -86,14 +164,13 @@ void sort_by_x(std::span<Crossing> crossings) {
       std::swap(crossings[i], crossings[i - 1]);
 }
 
-/// Appends the runs between the crossings of a row.
-void fill_inside(std::span<Crossing> crossings, int width, std::vector<Run>& runs) {
+/// Sets the cells between the crossings of a row.
+void fill_inside(std::span<Crossing> crossings, int width, RowBits& row) {
   sort_by_x(crossings);
   int winding = 0;
   for (std::size_t k = 0; k + 1 < crossings.size(); ++k) {
     winding += crossings[k].winding;
-    if (winding != 0)
-      runs.push_back({cell(crossings[k].x, width), cell(crossings[k + 1].x, width) + 1});
+    if (winding != 0) row.set({cell(crossings[k].x, width), cell(crossings[k + 1].x, width) + 1});
   }
 }
 
@@ -107,12 +184,6 @@ void append_sorted(std::span<const Run> runs, Rows& rows) {
       rows.runs.push_back(run);
   }
   rows.first.push_back(static_cast<int>(rows.runs.size()));
-}
-
-/// The same of runs in any order.
-void append_row(std::vector<Run>& runs, Rows& rows) {
-  std::ranges::sort(runs, {}, &Run::begin);
-  append_sorted(runs, rows);
 }
 
 /// reach[d]: the widest |dx| at |dy| = d at which a point of one cell can lie nearer than the
@@ -169,7 +240,7 @@ bool unite_alike(const Stack& stack, std::vector<Column>& columns, std::vector<R
   return true;
 }
 
-Rows grow(const Rows& touched, double padding) {
+Rows grow(const Rows& touched, int width, double padding) {
   const std::vector<int> reach = disk_rows(padding);
   const int margin = margin_of(padding);
   Rows grown;
@@ -177,6 +248,7 @@ Rows grow(const Rows& touched, double padding) {
   grown.first.reserve(static_cast<std::size_t>(touched.height() + 2 * margin + 1));
   std::vector<Run> runs;
   std::vector<Column> columns;
+  RowBits row(width + 2 * margin);
   for (int y = -margin; y < touched.height() + margin; ++y) {
     const Stack stack{
         touched, reach, std::max(0, y - margin), std::min(touched.height() - 1, y + margin),
@@ -186,10 +258,9 @@ Rows grow(const Rows& touched, double padding) {
       append_sorted(runs, grown);
       continue;
     }
-    runs.clear();
     for (int s = stack.first; s <= stack.last; ++s)
-      for (const Run& run : touched.row(s)) runs.push_back(stack.widened(run, s));
-    append_row(runs, grown);
+      for (const Run& run : touched.row(s)) row.set(stack.widened(run, s));
+    row.move_to(grown);
   }
   return grown;
 }
@@ -208,21 +279,17 @@ Mask make_mask(const charts::Outline& outline, const Turn& turn, double padding)
   }
   mask.low = low;
   mask.width = std::max(1, static_cast<int>(std::ceil(high.x() - low.x())));
-  Scan scan{mask.width, std::max(1, static_cast<int>(std::ceil(high.y() - low.y()))), {}, {}};
-  const auto rows = static_cast<std::size_t>(scan.height);
-  scan.runs.reserve(kUsuallyInARow * rows);
-  scan.crossings.reserve(kUsuallyInARow * rows);
-  for (const auto& [a, b] : outline) touch(turn(a) - low, turn(b) - low, scan);
-  scan.runs.sort(rows);
-  scan.crossings.sort(rows);
-  std::vector<Run> runs;
+  Scan scan(mask.width, std::max(1, static_cast<int>(std::ceil(high.y() - low.y()))));
+  for (const auto& [a, b] : outline) scan.touch(turn(a) - low, turn(b) - low);
+  const std::size_t rows = scan.sort();
+  RowBits row(mask.width);
   for (std::size_t y = 0; y < rows; ++y) {
-    runs.assign(scan.runs.row(y).begin(), scan.runs.row(y).end());
-    fill_inside(scan.crossings.row(y), mask.width, runs);
-    append_row(runs, mask.touched);
+    for (const Run& run : scan.runs.row(y)) row.set(run);
+    fill_inside(scan.crossings.row(y), mask.width, row);
+    row.move_to(mask.touched);
   }
   for (const Run& run : mask.touched.runs) mask.cells += run.end - run.begin;
-  mask.grown = padding > 0 ? grow(mask.touched, padding) : mask.touched;
+  mask.grown = padding > 0 ? grow(mask.touched, mask.width, padding) : mask.touched;
   return mask;
 }
 
