@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -143,6 +144,12 @@ OnProgress part_of_progress(OnProgress whole, double begin, double end) {
   return [whole = std::move(whole), begin, end](Stage stage, double share) {
     whole(stage, begin + share * (end - begin));
   };
+}
+
+OnProgress progress_without_steps_back(OnProgress whole) {
+  if (!whole) return whole;
+  return [whole = std::move(whole), furthest = std::make_shared<double>(0)](
+             Stage stage, double share) { whole(stage, *furthest = std::max(*furthest, share)); };
 }
 
 SeamsOfCharts seams_of(const Segments& segments) {

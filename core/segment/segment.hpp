@@ -26,6 +26,8 @@ using OnProgress = std::function<void(Stage, double)>;
 
 /// Tells `whole` of a part of its work, from one share of it to another.
 OnProgress part_of_progress(OnProgress whole, double begin, double end);
+/// The share that was told stays where a search begins anew.
+OnProgress progress_without_steps_back(OnProgress whole);
 
 struct SegmentRules {
   double max_distortion = kDefaultDistortion;  ///< of all regions together, D_angle and D_area; > 2

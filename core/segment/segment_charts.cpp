@@ -2,13 +2,13 @@
 // purpose, or what needs no seam, and stays one chart unless a bound of distortion is asked for.
 // Everything else needs seams anyway, and then the best ones. So does a disk whose boundary is a
 // mere puncture: by the isoperimetric inequality it would have to be drawn out tenfold to enclose
-// the disk's area.
+// the disk's area. Of a component that shall be one chart, the search's only chart is taken, or
+// else it is cut to a disk, however distorted; so is one of which too many charts are left.
 #include "core/segment/segment_charts.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -18,12 +18,15 @@
 #include "core/segment/component_charts.hpp"
 #include "core/segment/region_charts.hpp"
 #include "core/segment/shared_segments.hpp"
+#include "core/segment/whole_chart.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
-constexpr double kShareOfFirst = 0.25;   // of the work, to share charts out
+constexpr double kLeastOpenness = 0.01;   // 1 / 10^2
+constexpr double kShareOfFirst = 0.25;    // of the work, to share charts out
+constexpr double kMostOfCut = 100;        // distortion of a chart instead of too many
+constexpr Index kMostFacesOfOne = 20000;  // of a component that is searched for a single chart
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const charts::Chart& component) {
@@ -72,24 +75,33 @@ void note(charts::Charts& surface, RepairKind kind, Index count) {
   if (count > 0) surface.repairs.push_back({kind, 0, count});
 }
 
+/// How many charts each component may become, in the order of surfaces and components.
+struct Quotas {
+  std::vector<Index> most;
+  bool merges_to_one = false;  ///< 1: by merging, not by a cut to a disk
+  bool is_last = true;         ///< not only to see how many charts the components would like
+};
+
 /// What is done with components, one after another.
 class Cutter {
  public:
-  Cutter(const SegmentOptions& options, bool merges_to_one, const Account& account,
+  Cutter(const SegmentOptions& options, const Quotas& quotas, const Account& account,
          Executor& executor)
-      : options_(options), merges_to_one_(merges_to_one), account_(account), executor_(executor) {}
+      : options_(options), quotas_(quotas), account_(account), executor_(executor) {}
 
   [[nodiscard]] bool is_segmented(const charts::Chart& component, Index most) const {
-    const bool is_cut = most == 1 && !merges_to_one_;
-    if (options_.one_chart_each || is_cut) return false;
-    return !charts::is_disk(component) || options_.max_distortion ||
-           openness(component) < kLeastOpenness;
+    if (options_.one_chart_each) return false;
+    const bool is_disk = charts::is_disk(component);
+    if (is_one(most))
+      return !is_disk && options_.max_distortion && component.mesh.face_count() <= kMostFacesOfOne;
+    return !is_disk || options_.max_distortion || openness(component) < kLeastOpenness;
   }
 
   [[nodiscard]] ComponentRules rules_of(const charts::Chart& component, Index most) const {
+    const bool has_bound = options_.max_distortion && !is_one(most);
     SegmentRules rules =
-        account_.rules(options_.max_distortion.value_or(kDefaultDistortion), component);
-    rules.most_regions = most;
+        account_.rules(has_bound ? *options_.max_distortion : kDefaultDistortion, component);
+    if (!is_one(most)) rules.most_regions = most;
     rules.effort = options_.effort;
     const bool may_stay = charts::is_disk(component) && openness(component) >= kLeastOpenness;
     return {rules, options_.symmetry, may_stay};
@@ -99,16 +111,16 @@ class Cutter {
   void add(charts::Chart component, Index most) {
     throw_if_cancelled(account_.stop());
     if (is_segmented(component, most))
-      return take(component, charts_within_bound(component, rules_of(component, most), executor_));
-    if (!charts::is_disk(component)) {
-      charts::cut(component);
-      ++cuts;
-    }
-    charts.push_back(std::move(component));
+      return take(std::move(component), most,
+                  charts_within_bound(component, rules_of(component, most), executor_));
+    add_whole(std::move(component));
   }
 
-  /// A component and its charts.
-  void take(const charts::Chart& component, ComponentCharts parts) {
+  /// A component and the charts that the search has found for it.
+  void take(charts::Chart component, Index most, ComponentCharts parts) {
+    const bool are_too_many = static_cast<Index>(parts.charts.size()) > most;
+    if (are_too_many && (is_one(most) || (quotas_.is_last && is_sound_when_cut(component))))
+      return add_whole(std::move(component));
     rough += parts.is_rough ? 1 : 0;
     segmented += !charts::is_disk(component) || parts.charts.size() > 1 ? 1 : 0;
     for (charts::Chart& part : parts.charts) charts.push_back(std::move(part));
@@ -118,16 +130,28 @@ class Cutter {
   Index cuts = 0, segmented = 0, rough = 0;
 
  private:
+  /// Where merging leaves too many charts, their maps would overlap, but that of a cut may not.
+  [[nodiscard]] bool is_sound_when_cut(charts::Chart component) const {
+    if (!charts::is_disk(component)) charts::cut(component);
+    return map_whole(component, kMostOfCut, executor_, account_.stop()).has_value();
+  }
+
+  void add_whole(charts::Chart component) {
+    if (!charts::is_disk(component)) {
+      charts::cut(component);
+      ++cuts;
+    }
+    charts.push_back(std::move(component));
+  }
+
+  /// One chart, at any distortion: not by merging, whose last maps overlap where a cut's may not.
+  /// The search's only chart at the default bound is taken for every bound (ADR 0039).
+  [[nodiscard]] bool is_one(Index most) const { return most == 1 && !quotas_.merges_to_one; }
+
   const SegmentOptions& options_;
-  bool merges_to_one_;
+  const Quotas& quotas_;
   const Account& account_;
   Executor& executor_;
-};
-
-/// How many charts each component may become, in the order of surfaces and components.
-struct Quotas {
-  std::vector<Index> most;
-  bool merges_to_one = false;  ///< 1: by merging, not by a cut to a disk
 };
 
 /// What cutting came to.
@@ -170,7 +194,7 @@ std::vector<std::optional<ComponentCharts>> segment_together(
 Cuts cut_all(std::vector<charts::Charts>& surfaces, const Quotas& quotas,
              const SegmentOptions& options, const SegmentWatch& watch, Executor& executor) {
   Account account(surfaces, watch);
-  const auto make_cutter = [&] { return Cutter(options, quotas.merges_to_one, account, executor); };
+  const auto make_cutter = [&] { return Cutter(options, quotas, account, executor); };
   auto made = segment_together(surfaces, quotas, make_cutter(), account, executor);
   made.resize(quotas.most.size());
   Cuts cuts;
@@ -180,7 +204,7 @@ Cuts cut_all(std::vector<charts::Charts>& surfaces, const Quotas& quotas,
       const std::size_t place = cuts.became.size(), before = cutter.charts.size();
       const std::size_t faces = component.mesh.faces.size();
       if (made[place]) {
-        cutter.take(component, std::move(*made[place]));
+        cutter.take(std::move(component), quotas.most[place], std::move(*made[place]));
       } else {
         cutter.add(std::move(component), quotas.most[place]);
         account.finish(faces);
@@ -214,14 +238,6 @@ SegmentWatch part_of(const SegmentWatch& watch, double begin, double end) {
   return {part_of_progress(watch.on_progress, begin, end), watch.stop};
 }
 
-/// Searches that found nothing begin anew; the share that was told stays.
-SegmentWatch without_steps_back(const SegmentWatch& watch) {
-  if (!watch.on_progress) return watch;
-  return {[tell = watch.on_progress, furthest = std::make_shared<double>(0)](
-              Stage stage, double share) { tell(stage, *furthest = std::max(*furthest, share)); },
-          watch.stop};
-}
-
 /// All surfaces, of which no more than `most` charts shall be made. How these are shared out is
 /// decided at kDefaultDistortion and holds for all bounds: what each component comes to then
 /// follows the steps (ADR 0039).
@@ -236,7 +252,8 @@ Cuts cut_to_most(std::vector<charts::Charts>& surfaces, const SegmentOptions& op
   if (has_steps) first.max_distortion = kDefaultDistortion;
   const std::vector<charts::Charts> whole = surfaces;
   const SegmentWatch begin = has_steps ? part_of(watch, 0, kShareOfFirst) : watch;
-  Cuts cuts = cut_all(surfaces, {std::vector<Index>(components, each)}, first, begin, executor);
+  const Quotas quotas{std::vector<Index>(components, each), false, components == 1};
+  Cuts cuts = cut_all(surfaces, quotas, first, begin, executor);
   if (components == 1 || (cuts.charts() <= most && !has_steps)) return cuts;
   surfaces = whole;
   const SegmentWatch rest =
@@ -265,7 +282,7 @@ std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces,
                                    Executor& executor) {
   const std::size_t components = count_of(surfaces);
   const Index most = options.max_charts.value_or(std::numeric_limits<Index>::max());
-  const SegmentWatch own = without_steps_back(watch);
+  const SegmentWatch own{progress_without_steps_back(watch.on_progress), watch.stop};
   const Cuts cuts = options.max_charts ? cut_to_most(surfaces, options, own, executor)
                                        : cut_all(surfaces, {std::vector<Index>(components, most)},
                                                  options, own, executor);

@@ -86,6 +86,36 @@ TEST(SegmentCharts, KeepsToANumberOfChartsWhereMapsAllow) {
   EXPECT_NE(two_pieces.note.value().text.find("2 components"), std::string::npos);
 }
 
+/// A cut runs along some edges of a box, and shears its sides.
+TEST(SegmentCharts, IsOneChartWithinTheBoundWhereOneWillDo) {
+  TriMesh book = cube(2);
+  for (Vec3& p : book.positions) p = p.cwiseProduct(Vec3(0.15, 0.21, 0.03));
+  const Cut one = cut_up(book, {.max_distortion = 2.02, .max_charts = 1});
+  ASSERT_EQ(faces_of(one).size(), 1U);
+  EXPECT_LE(distortion_by_svd(one)[0], 2.02);
+  EXPECT_LE(distortion_by_svd(one)[1], 2.02);
+}
+
+/// No two of the last charts of a spring have a common map without overlaps.
+TEST(SegmentCharts, IsCutToOneWhereMergingLeavesTooMany) {
+  constexpr Index kAround = 8, kAlong = 80;
+  TriMesh coil = cylinder(kAround, kAlong, 0.12, 4 * 2 * std::numbers::pi);
+  for (const double end : {0.0, 4 * 2 * std::numbers::pi}) coil.positions.push_back({0, 0, end});
+  for (Index i = 0; i < kAround; ++i) {
+    const Index next = (i + 1) % kAround, top = kAround * kAlong;
+    coil.faces.push_back({coil.vertex_count() - 2, next, i});
+    coil.faces.push_back({coil.vertex_count() - 1, top + i, top + next});
+  }
+  for (Vec3& p : coil.positions) {
+    const double turn = p.z(), from_axis = 1 + p.x();
+    p = {from_axis * std::cos(turn), from_axis * std::sin(turn), p.y() + 0.06 * turn};
+  }
+  ASSERT_GT(faces_of(cut_up(coil, {.max_distortion = 2.02})).size(), 2U);
+  const Cut two = cut_up(coil, {.max_distortion = 2.02, .max_charts = 2});
+  EXPECT_LE(faces_of(two).size(), 2U);
+  EXPECT_FALSE(two.note.has_value());
+}
+
 TEST(SegmentCharts, CutsToOneDiskEachWhereComponentsShallStayWhole) {
   const Cut cut = cut_up(torus(16, 8), {.one_chart_each = true});
   EXPECT_EQ(faces_of(cut).size(), 1U);
