@@ -12,6 +12,7 @@
 #include "core/measure/seam_length.hpp"
 #include "core/pipeline/analyse.hpp"
 #include "core/pipeline/assemble.hpp"
+#include "core/pipeline/enlarge_tiny_islands.hpp"
 #include "core/pipeline/note_kept_edges.hpp"
 #include "core/pipeline/painted_density.hpp"
 #include "core/pipeline/place_islands.hpp"
@@ -37,13 +38,21 @@ std::string kept_energy_of(Method method) {
 /// Places every chart on the page; the maps become page UVs.
 void pack_free_charts(Layout& layout, std::span<const Surface> surfaces,
                       const UnwrapOptions& options, Executor& executor) {
-  IslandsToPlace islands;
+  std::vector<SizedIsland> sized;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
       const charts::Chart& chart = *layout.charts[s][k];
       UvMap& map = layout.islands[s][k];
       const double density = density_of(chart, surfaces[s], options);
       for (Vec2& uv : map) uv *= density;
+      sized.push_back({&chart, &map});
+    }
+  if (!options.packing.texels_per_unit) enlarge_tiny_islands(sized);
+  IslandsToPlace islands;
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
+      const charts::Chart& chart = *layout.charts[s][k];
+      UvMap& map = layout.islands[s][k];
       islands.add(charts::outline_of(chart, map), map,
                   group_of(surfaces[s], chart.face_source.front(), options.packing.group));
     }
