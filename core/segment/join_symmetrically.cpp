@@ -42,12 +42,13 @@ class SymmetricPartition {
     }
   }
 
-  /// The regions of both sides, joined; nothing where an image is no disk, which a mesh that is not
-  /// quite symmetric may cause.
+  /// The regions of both sides, joined; nothing where an image is no disk, or distorted beyond the
+  /// bound, which a mesh that is not quite symmetric may cause.
   std::optional<Segments> joined() && {
     reflect();
     if (!are_disks_) return std::nullopt;
     join_across();
+    if (!keeps_bound()) return std::nullopt;
     return segments();
   }
 
@@ -89,6 +90,15 @@ class SymmetricPartition {
   [[nodiscard]] std::size_t count() const {
     return static_cast<std::size_t>(std::ranges::count_if(
         regions_, [](const MappedRegion& own) { return !own.faces.empty(); }));
+  }
+
+  /// Of all regions, and of each.
+  [[nodiscard]] bool keeps_bound() const {
+    const double most = budget_ / kMarginOfExcess;
+    return total_excess(regions_).worst() <= most &&
+           std::ranges::all_of(regions_, [&](const MappedRegion& own) {
+             return own.excess.worst() <= kMostOfOneRegion * most * own.area;
+           });
   }
 
   Segments segments() {

@@ -19,8 +19,9 @@ struct FrontRegions {
 };
 
 /// These regions and their images, joined across the plane as far as the excess allows, those with
-/// the longest common borders first. Nothing where the image of a region is no disk, which a mesh
-/// that is not quite symmetric may cause. Throws Error{cancelled}.
+/// the longest common borders first. Nothing where the image of a region is no disk, or its map is
+/// distorted beyond the excess, which a mesh that is not quite symmetric may cause. Throws
+/// Error{cancelled}.
 std::optional<Segments> join_symmetrically(const SegmentationMesh& surface, const Mirror& mirror,
                                            std::span<const FrontRegions> front, double excess,
                                            const std::stop_token& stop);

@@ -121,11 +121,12 @@ std::optional<Segments> segment_symmetrically(const charts::Chart& component,
       std::vector<FrontRegions> front;
       for (FrontSearch& search : searches) front.push_back(search.regions(own));
       auto next = join_symmetrically(surface, mirror, front, excess, rules.stop);
-      if (!best && !next) return std::nullopt;
-      if (!best || (next && is_better(seams_of(*next), seams_of(*best), rules.most_regions)))
+      if (!next) continue;
+      if (!best || is_better(seams_of(*next), seams_of(*best), rules.most_regions))
         best = std::move(next);
     }
-  if (best->regions.size() > static_cast<std::size_t>(rules.most_regions)) return std::nullopt;
+  if (!best || best->regions.size() > static_cast<std::size_t>(rules.most_regions))
+    return std::nullopt;
   if (!keeps_edges(surface, *best)) return std::nullopt;
   return best;
 }
