@@ -101,7 +101,9 @@ TEST(Unwrap, MeasuresDistortionAsItIsWritten) {
   TriMesh tiny = shapes::random_disk(60, 5);  // some fifty steps wide on the page
   for (Vec3& p : tiny.positions) p *= 3e-6;
   const Surface part = shapes::surface_of(tiny);
-  const Unwrapped u = unwrapped({part, shapes::surface_of(shapes::grid(2, 2))});
+  UnwrapOptions options;
+  options.packing.texels_per_unit = 0.9 * options.resolution;  // else it is enlarged
+  const Unwrapped u = unwrapped({part, shapes::surface_of(shapes::grid(2, 2))}, options);
   const auto [angle, area] = distortion_written(part, u.surfaces[0]);
   EXPECT_GT(angle, 2.05);  // of the map before it is rounded: 2.01
   EXPECT_NEAR(u.report.charts[0].distortion.angle, angle, 1e-6 * angle);

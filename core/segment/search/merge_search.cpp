@@ -159,21 +159,6 @@ Candidate MergeSearch::cheapest(std::vector<Candidate> all) const {
   return best;
 }
 
-Candidate MergeSearch::bisect_regions(Candidate whole) {
-  Candidate best = price(std::move(whole), kInfinity, kAcross);
-  while (best.cost.all > best.cost.seams) {
-    std::vector<Candidate> found =
-        solve::parallel_map<Candidate>(best.partition.regions.size(), executor_,
-                                       [&](std::size_t k) { return with_halves(best, k); });
-    learn(found);
-    auto next = std::ranges::min_element(found, std::less(), all_of);
-    if (!(next->cost.all < best.cost.all)) break;
-    best = std::move(*next);
-  }
-  close_slits(context_, settings_, best.partition);
-  return best;
-}
-
 Candidate MergeSearch::price(Candidate own) const {
   return price(std::move(own), kInfinity, kUsual);
 }
@@ -270,7 +255,11 @@ Candidate MergeSearch::with_halves(const Candidate& whole, std::size_t k) const 
     return std::move(*cut);
   });
   if (apart.partition.regions.empty()) return apart;
-  return price(std::move(apart), whole.cost.all, kAcross);
+  return price_halves(std::move(apart), is_far_from_full(whole.cost) ? kInfinity : whole.cost.all);
+}
+
+Candidate MergeSearch::price_halves(Candidate own, double limit) const {
+  return price(std::move(own), limit, kAcross);
 }
 
 /// Each distinct candidate once, the shortest seams first.

@@ -79,6 +79,9 @@ class MergeSearch {
   [[nodiscard]] Candidate merge(Partition partition, const MergeSettings& settings) const;
   [[nodiscard]] Candidate merge_more(const Partition& partition, double least_fill) const;
   [[nodiscard]] Candidate remerge_part(const Candidate& best, std::size_t number) const;
+  /// Whether bisecting goes on though it gains nothing yet.
+  static bool is_far_from_full(const PartitionCost& cost);
+  [[nodiscard]] Candidate price_halves(Candidate own, double limit) const;
   [[nodiscard]] Candidate with_halves(const Candidate& whole, std::size_t k) const;
   [[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> all) const;
   [[nodiscard]] Candidate price(Candidate own, double limit, CostRules rules) const;

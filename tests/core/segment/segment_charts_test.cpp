@@ -96,22 +96,28 @@ TEST(SegmentCharts, IsOneChartWithinTheBoundWhereOneWillDo) {
   EXPECT_LE(distortion_by_svd(one)[1], 2.02);
 }
 
-/// No two of the last charts of a spring have a common map without overlaps.
-TEST(SegmentCharts, IsCutToOneWhereMergingLeavesTooMany) {
-  constexpr Index kAround = 8, kAlong = 80;
-  TriMesh coil = cylinder(kAround, kAlong, 0.12, 4 * 2 * std::numbers::pi);
-  for (const double end : {0.0, 4 * 2 * std::numbers::pi}) coil.positions.push_back({0, 0, end});
-  for (Index i = 0; i < kAround; ++i) {
-    const Index next = (i + 1) % kAround, top = kAround * kAlong;
-    coil.faces.push_back({coil.vertex_count() - 2, next, i});
-    coil.faces.push_back({coil.vertex_count() - 1, top + i, top + next});
+/// A closed tube along a helix.
+TriMesh coil(Index around, Index along, int turns) {
+  const double length = turns * 2 * std::numbers::pi;
+  TriMesh mesh = cylinder(around, along, 0.12, length);
+  for (const double end : {0.0, length}) mesh.positions.push_back({0, 0, end});
+  for (Index i = 0; i < around; ++i) {
+    const Index next = (i + 1) % around, top = around * along;
+    mesh.faces.push_back({mesh.vertex_count() - 2, next, i});
+    mesh.faces.push_back({mesh.vertex_count() - 1, top + i, top + next});
   }
-  for (Vec3& p : coil.positions) {
+  for (Vec3& p : mesh.positions) {
     const double turn = p.z(), from_axis = 1 + p.x();
     p = {from_axis * std::cos(turn), from_axis * std::sin(turn), p.y() + 0.06 * turn};
   }
-  ASSERT_GT(faces_of(cut_up(coil, {.max_distortion = 2.02})).size(), 2U);
-  const Cut two = cut_up(coil, {.max_distortion = 2.02, .max_charts = 2});
+  return mesh;
+}
+
+/// No two of the last charts of a spring have a common map without overlaps.
+TEST(SegmentCharts, IsCutToOneWhereMergingLeavesTooMany) {
+  const TriMesh spring = coil(8, 80, 4);
+  ASSERT_GT(faces_of(cut_up(spring, {.max_distortion = 2.02})).size(), 2U);
+  const Cut two = cut_up(spring, {.max_distortion = 2.02, .max_charts = 2});
   EXPECT_LE(faces_of(two).size(), 2U);
   EXPECT_FALSE(two.note.has_value());
 }

@@ -9,6 +9,7 @@
 #include "core/pack/pack.hpp"
 #include "core/segment/base/labels.hpp"
 #include "core/segment/region_charts.hpp"
+#include "core/segment/search/merge_search.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment::search {
@@ -58,6 +59,29 @@ TEST(Bisect, LeavesATriangleAlone) {
   const SegmentationMesh surface =
       make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
   EXPECT_FALSE(bisect({surface}, whole(surface), 0));
+}
+
+/// Four strips that are as long as the page is wide: it is no smaller before all are in halves.
+TEST(Bisect, HalvesAllLongRegionsWhereOneAloneGainsNothing) {
+  const TriMesh mesh = shapes::grid(160, 4, 160, 4);
+  const SegmentationMesh surface =
+      make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+  Partition strips{std::vector<MappedRegion>(4), std::vector<char>(surface.length.size(), 0)};
+  for (Index t = 0; t < surface.face_count(); ++t) {
+    double y = 0;
+    for (const Index v : mesh.faces[std::size_t(t)]) y += mesh.positions[std::size_t(v)].y() / 3;
+    strips.regions[std::size_t(y)].faces.push_back(t);
+  }
+  for (MappedRegion& strip : strips.regions) {
+    strip.uv = projected(surface, strip.faces);
+    strip.area = 0.25;
+    strip.is_sound = true;
+  }
+  ProgressEstimate untold({});
+  FailedTrials failures;
+  SerialExecutor serial;
+  MergeSearch search({surface, &untold, &failures}, strips, {}, {}, serial);
+  EXPECT_GE(search.bisect_regions({strips}).partition.regions.size(), 8U);
 }
 
 /// In two rings, a longer and a shorter one, it fills less than half of one.
