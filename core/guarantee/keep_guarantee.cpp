@@ -70,10 +70,12 @@ std::vector<std::array<Index, 2>> overlaps_of(const charts::Chart& chart, const 
   return measure::overlapping_pairs(chart.mesh.faces, chart.loops, uv, measure::kMostPairs, stop);
 }
 
-[[noreturn]] void fail(const std::string& why) {
+[[noreturn]] void fail(const std::string& why, const solve::repair::MapIntent& intent) {
+  const std::string what_to_do = has_a_place(intent)
+                                     ? "relax the constraints"
+                                     : "send the smallest parts as a mesh of their own";
   throw Error(ErrorCode::guarantee_failed,
-              why + "; relax the constraints, or use guarantee=none to get the raw map",
-              "/guarantee");
+              why + "; " + what_to_do + ", or use guarantee=none to get the raw map", "/guarantee");
 }
 
 /// Appends the pieces of a part to `open`.
@@ -160,7 +162,7 @@ bool lay_apart(GuaranteedPart& part, double unit, const GuaranteeRules& rules, M
 std::optional<Split> split_needed(GuaranteedPart& part, const std::vector<Index>& flipped,
                                   double unit, const GuaranteeRules& rules, Mending& mending) {
   if (!flipped.empty()) {
-    if (part.chart->mesh.face_count() == 1) fail("a triangle has no area in the map");
+    if (part.chart->mesh.face_count() == 1) fail("a triangle has no area in the map", rules.intent);
     return Split{seeds_at_flips(*part.chart, flipped)};
   }
   if (rules.guarantee != Guarantee::bijective) return {};
@@ -207,7 +209,7 @@ std::vector<GuaranteedPart> split_as_needed(GuaranteedPart whole, std::vector<In
     if (!needed)
       kept.push_back(std::move(part));
     else if (has_a_place(rules.intent))
-      fail("the constraints leave no map without flips or overlaps");
+      fail("no map without flips or overlaps was found for the constraints", rules.intent);
     else
       split(part, *needed, rules.intent.stop, open);
   }
@@ -269,11 +271,13 @@ Written keep_on_page(const charts::Chart& chart, const GuaranteeRules& rules, Uv
   if (quantize_uvs(chart, rules.intent.constrained, rules.intent.stop, page_uv) > 0)
     fail(
         "a triangle is too small, compared with the page, for the precision in which UVs are "
-        "written");
+        "written",
+        rules.intent);
   const auto overlaps = static_cast<Index>(overlaps_of(chart, page_uv, rules.intent.stop).size());
   if (overlaps == 0 || rules.guarantee != Guarantee::bijective) return {0, overlaps};
   if (!separate_rounded_boundaries(chart, rules.intent.constrained, page_uv, rules.intent.stop))
-    fail("two triangles are too close to each other for the precision in which UVs are written");
+    fail("two triangles are too close to each other for the precision in which UVs are written",
+         rules.intent);
   return {0, 0};
 }
 

@@ -73,7 +73,9 @@ void require_area(std::span<const charts::Charts> parts) {
       is_tiny = is_tiny || own < kLeastArea;
     }
   if (area == 0)
-    throw Error(ErrorCode::zero_area, "every triangle has zero area; there is nothing to unwrap");
+    throw Error(ErrorCode::zero_area,
+                "every triangle has zero area at the precision of its coordinates; move a mesh "
+                "that lies far away to the origin");
   if (is_tiny)
     throw Error(ErrorCode::zero_area,
                 "a component has less area than can be computed with; scale it to ordinary units "
