@@ -7,6 +7,7 @@
 
 #include "client/failure.hpp"
 #include "client/files.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -22,10 +23,9 @@ bool is_among(std::span<const std::string_view> names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-/// The extension in small letters, without its dot.
+/// The extension in lower case, without its dot.
 std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  const std::string extension = lower_case(path.extension().string());
   return extension.empty() ? extension : extension.substr(1);
 }
 

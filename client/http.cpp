@@ -11,6 +11,7 @@
 #include "client/bounded_http.hpp"
 #include "client/failure.hpp"
 #include "client/http_redirect.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -45,14 +46,10 @@ std::pair<std::string, int> host_and_port(std::string_view authority, const char
 
 httplib::Headers to_httplib(const Headers& headers) { return {headers.begin(), headers.end()}; }
 
-Headers lower_case(const httplib::Headers& headers) {
+/// With their names in lower case.
+Headers from_httplib(const httplib::Headers& headers) {
   Headers lowered;
-  for (const auto& [name, value] : headers) {
-    std::string key = name;
-    std::ranges::transform(key, key.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-    lowered.emplace(std::move(key), value);
-  }
+  for (const auto& [name, value] : headers) lowered.emplace(lower_case(name), value);
   return lowered;
 }
 
@@ -135,7 +132,7 @@ struct Receiver {
 };
 
 Reply to_reply(const httplib::Result& result) {
-  return {result->status, lower_case(result->headers), result->body};
+  return {result->status, from_httplib(result->headers), result->body};
 }
 
 }  // namespace

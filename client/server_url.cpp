@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "client/failure.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -18,8 +19,6 @@ bool is_port(std::string_view digits) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
   return error == std::errc() && end == digits.data() + digits.size() && port > 0 && port < 65536;
 }
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 bool is_host_character(char c) {
   const bool alphanumeric =
@@ -53,8 +52,7 @@ ServerUrl parse_server_url(std::string_view text) {
   std::string scheme = "http";
   std::string_view rest = text;
   if (const std::size_t colon = text.find("://"); colon != std::string_view::npos) {
-    scheme = text.substr(0, colon);
-    std::ranges::transform(scheme, scheme.begin(), lower);  // RFC 3986, 3.1
+    scheme = lower_case(text.substr(0, colon));  // RFC 3986, 3.1
     rest = text.substr(colon + 3);
   }
   if (scheme != "http" && scheme != "https") refuse(text, "has a scheme that is not http or https");

@@ -9,6 +9,7 @@
 #include "core/asset/mesh_files/text_reader.hpp"
 #include "core/asset/other_formats.hpp"
 #include "core/base/error.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -61,9 +62,8 @@ bool looks_like_obj(std::string_view file, Pace& pace) {
 /// Whether a text starts with "solid" and a space, in any case.
 bool starts_with_solid(std::string_view text) {
   constexpr std::string_view kSolid = "solid";
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
   return text.size() > kSolid.size() &&
-         std::ranges::equal(text.substr(0, kSolid.size()), kSolid, {}, lower) &&
+         std::ranges::equal(text.substr(0, kSolid.size()), kSolid, {}, lower_letter) &&
          kSpaces.find(text[kSolid.size()]) != std::string_view::npos;
 }
 

@@ -14,6 +14,7 @@
 #include "core/asset/other_formats.hpp"
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -44,11 +45,7 @@ std::string_view ending_of(std::string_view name) {
   return dot == std::string_view::npos ? std::string_view() : name.substr(dot);
 }
 
-std::string ending_in_lower_case(const std::string& name) {
-  std::string ending(ending_of(name));
-  for (char& c : ending) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return ending;
-}
+std::string ending_in_lower_case(const std::string& name) { return lower_case(ending_of(name)); }
 
 bool is_asset_name(const std::string& name) {
   return std::ranges::find(kEndings, ending_in_lower_case(name)) != kEndings.end();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/lower_case.hpp"
 #include "server/base/identity.hpp"
 #include "server/bucket/s3_signature.hpp"
 #include "server/outbound/transfer.hpp"
@@ -159,9 +160,7 @@ void S3Exchange::take_line(std::string_view line) {
   }
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos) return;
-  std::string name(line.substr(0, colon));
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  answer_.headers[name] = trimmed(line.substr(colon + 1));
+  answer_.headers[lower_case(line.substr(0, colon))] = trimmed(line.substr(colon + 1));
 }
 
 bool S3Exchange::take_body(std::string_view bytes) {

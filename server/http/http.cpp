@@ -1,10 +1,10 @@
 #include "server/http/http.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 
 #include "api/error_table.hpp"
+#include "core/base/lower_case.hpp"
 #include "server/base/errors.hpp"
 #include "server/base/utf8.hpp"
 
@@ -15,10 +15,6 @@ constexpr int kInternal = 500;
 constexpr int kUnavailable = 503;
 
 constexpr std::size_t kMaxProblemText = 500;  // bytes of a detail, or of a pointer
-
-char lower(char letter) {
-  return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-}
 
 /// A name from a request may be as long as the request.
 std::string bounded(const std::string& text) {
@@ -41,7 +37,7 @@ std::string_view trim(std::string_view text) {
 }
 
 bool IgnoreCase::operator()(std::string_view left, std::string_view right) const {
-  return std::ranges::lexicographical_compare(left, right, {}, lower, lower);
+  return std::ranges::lexicographical_compare(left, right, {}, lower_letter, lower_letter);
 }
 
 std::string Request::header(std::string_view name) const {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <limits>
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/lower_case.hpp"
 #include "server/http/http.hpp"
 
 namespace unwrapd::server::http {
@@ -38,13 +38,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return items;
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& letter : result)
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return result;
-}
-
 std::string_view unquoted(std::string_view text) {
   const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
   return quoted ? text.substr(1, text.size() - 2) : text;
@@ -67,7 +60,7 @@ struct MediaRange {
 
 MediaRange media_range(std::string_view entry) {
   const std::vector<std::string_view> parts = split(entry, ';');
-  MediaRange range{.type = parts.empty() ? std::string() : lower(parts.front()), .quality = 1};
+  MediaRange range{.type = parts.empty() ? std::string() : lower_case(parts.front()), .quality = 1};
   for (const std::string_view part : parts) {
     if (part.starts_with("q=")) range.quality = number<double>(part.substr(2)).value_or(0);
   }
@@ -112,7 +105,7 @@ double quality(const std::vector<MediaRange>& ranges, std::string_view type) {
 }  // namespace
 
 BodyKind body_kind(std::string_view content_type) {
-  const std::string type = lower(trim(content_type.substr(0, content_type.find(';'))));
+  const std::string type = lower_case(trim(content_type.substr(0, content_type.find(';'))));
   if (type == "multipart/form-data") return BodyKind::multipart;
   if (type == media_type("json")) return BodyKind::reference;
   if (type.empty() || std::ranges::find(kAssetTypes, type) != kAssetTypes.end())
@@ -127,10 +120,10 @@ BodyKind body_kind(std::string_view content_type) {
 
 std::string multipart_boundary(std::string_view content_type) {
   const std::vector<std::string_view> fields = split(content_type, ';');
-  if (fields.empty() || lower(fields.front()) != "multipart/form-data") return {};
+  if (fields.empty() || lower_case(fields.front()) != "multipart/form-data") return {};
   for (const std::string_view field : fields) {
     const std::size_t equals = field.find('=');
-    if (equals == std::string_view::npos || lower(trim(field.substr(0, equals))) != "boundary")
+    if (equals == std::string_view::npos || lower_case(trim(field.substr(0, equals))) != "boundary")
       continue;
     return std::string(unquoted(trim(field.substr(equals + 1))));
   }
@@ -184,7 +177,7 @@ std::optional<int> preferred_wait(std::string_view prefer) {
   for (const std::string_view preference : split(prefer, ',')) {
     const std::string_view named = preference.substr(0, preference.find(';'));  // its parameters
     const std::size_t equals = std::min(named.find('='), named.size());
-    if (lower(trim(named.substr(0, equals))) != "wait" || equals == named.size()) continue;
+    if (lower_case(trim(named.substr(0, equals))) != "wait" || equals == named.size()) continue;
     const std::optional<int> seconds = number<int>(unquoted(trim(named.substr(equals + 1))));
     if (seconds && *seconds >= 0) return seconds;
   }

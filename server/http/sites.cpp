@@ -6,19 +6,12 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/lower_case.hpp"
+
 namespace unwrapd::server::http {
 namespace {
 
 constexpr auto kSafe = std::to_array<std::string_view>({"GET", "HEAD", "OPTIONS"});
-
-/// Names have no case; origins and rules are written in small letters.
-std::string in_small_letters(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-  });
-  return result;
-}
 
 /// "[::1]:80" without its port.
 std::string_view host_name(std::string_view host) {
@@ -61,7 +54,7 @@ bool is_named(std::string_view host, const std::vector<std::string>& rules) {
 }
 
 std::optional<Error> Sites::refusal(const Request& request) const {
-  const std::string host = in_small_letters(request.host);
+  const std::string host = lower_case(request.host);  // names have no case; rules are in lower case
   const std::string name(host_name(host));
   const bool known = host.empty() || name == "localhost" || is_numeric_host(name) ||
                      is_named(name, hosts_);  // HTTP/1.0, which no browser speaks, needs none
@@ -70,7 +63,7 @@ std::optional<Error> Sites::refusal(const Request& request) const {
                  "This server runs without API keys, so it answers only to addresses, localhost "
                  "and the names of --allowed-hosts; ask its operator to add this name.");
   }
-  const std::string origin = in_small_letters(request.header("Origin"));
+  const std::string origin = lower_case(request.header("Origin"));
   const bool safe = std::ranges::count(kSafe, request.method) > 0;
   if (safe || origin.empty() || host_of_origin(origin) == host || cors_.allows(origin))
     return std::nullopt;

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/base/error.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::server::outbound {
 namespace {
@@ -68,15 +69,11 @@ bool is_host_letter(char letter) {
 
 bool is_printable(char letter) { return letter > ' ' && letter < '\x7f'; }
 
-char lower(char letter) {
-  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-}
-
 /// Removes the scheme, in any letters (RFC 3986, 3.1), from a URL and says whether it is https.
 bool take_scheme(std::string_view& rest, const UrlUse& use) {
   for (const auto& [scheme, is_https] : {std::pair{std::string_view("https://"), true},
                                          std::pair{std::string_view("http://"), false}}) {
-    if (!std::ranges::equal(rest.substr(0, scheme.size()), scheme, {}, lower)) continue;
+    if (!std::ranges::equal(rest.substr(0, scheme.size()), scheme, {}, lower_letter)) continue;
     rest.remove_prefix(scheme.size());
     return is_https;
   }
@@ -107,8 +104,7 @@ void read_authority(std::string_view authority, OutboundUrl& url, const UrlUse& 
   }
   if (authority.starts_with('[') && authority.ends_with(']'))
     authority = authority.substr(1, authority.size() - 2);
-  url.host = authority;
-  std::ranges::transform(url.host, url.host.begin(), lower);
+  url.host = lower_case(authority);
   if (url.host.empty() || !std::ranges::all_of(url.host, is_host_letter))
     refuse(use, "has a host that is not one; correct it.");
 }

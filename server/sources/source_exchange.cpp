@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "core/base/lower_case.hpp"
 #include "server/http/media_types.hpp"
 
 namespace unwrapd::server::sources {
@@ -15,13 +15,6 @@ constexpr std::array<long, 5> kRedirects = {301, 302, 303, 307, 308};
 constexpr std::array<std::string_view, 7> kEndings = {".glb", ".gltf", ".obj", ".stl",
                                                       ".ply", ".off",  ".zip"};
 
-std::string in_small_letters(std::string_view text) {
-  std::string small(text);
-  for (char& letter : small)
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return small;
-}
-
 bool has_mesh_type(const std::string& content_type) {
   try {
     return http::body_kind(content_type) == http::BodyKind::asset;
@@ -31,7 +24,7 @@ bool has_mesh_type(const std::string& content_type) {
 }
 
 bool has_mesh_ending(std::string_view target) {
-  const std::string path = in_small_letters(target.substr(0, target.find('?')));
+  const std::string path = lower_case(target.substr(0, target.find('?')));
   return std::ranges::any_of(kEndings, [&](auto ending) { return path.ends_with(ending); });
 }
 
@@ -57,12 +50,12 @@ void SourceExchange::take_line(std::string_view line) {
   }
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos) return;
-  const std::string name = in_small_letters(line.substr(0, colon));
+  const std::string name = lower_case(line.substr(0, colon));
   std::string_view value = line.substr(colon + 1);
   while (value.ends_with('\n') || value.ends_with('\r')) value.remove_suffix(1);
   const std::string text(http::trim(value));
   if (name == "content-type") type_ = text;
-  if (name == "content-encoding") coding_ = in_small_letters(text);
+  if (name == "content-encoding") coding_ = lower_case(text);
   if (name == "location") location_ = text;
 }
 

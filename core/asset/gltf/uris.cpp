@@ -1,17 +1,17 @@
 #include "core/asset/gltf/uris.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 
 #include "core/asset/base/base64.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
 int hex_value(char c) {
   if (c >= '0' && c <= '9') return c - '0';
-  const int lower = std::tolower(static_cast<unsigned char>(c));
+  const char lower = lower_letter(c);
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 

@@ -8,6 +8,7 @@
 #include "core/asset/mesh_files/text_reader.hpp"
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
+#include "core/base/lower_case.hpp"
 #include "core/mesh/weld.hpp"
 
 namespace unwrapd::asset::mesh_files {
@@ -94,11 +95,7 @@ class TextStl {
   }
 
  private:
-  std::string next_word() {
-    std::string word(reader_.next());
-    for (char& c : word) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    return word;
-  }
+  std::string next_word() { return lower_case(reader_.next()); }
 
   void expect(std::string_view keyword) {
     if (next_word() != keyword) reader_.refuse("\"" + std::string(keyword) + "\" is expected");

@@ -10,6 +10,7 @@
 #include "core/asset/base/as_size.hpp"
 #include "core/asset/base/words.hpp"
 #include "core/asset/gltf/images.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::asset::obj {
 namespace {
@@ -56,7 +57,7 @@ void for_each_look(const Obj& obj, const Visit& visit) {
 bool has_ending(const std::string& path, std::string_view ending) {
   if (path.size() < ending.size()) return false;
   return std::equal(ending.begin(), ending.end(), path.end() - std::ptrdiff_t(ending.size()),
-                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+                    [](char a, char b) { return a == lower_letter(b); });
 }
 
 /// The type by the first bytes; of an image that was not sent by its name. Empty: not for a glTF.

@@ -3,10 +3,10 @@
 #include "core/asset/obj/mtl.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "core/asset/base/words.hpp"
+#include "core/base/lower_case.hpp"
 
 namespace unwrapd::asset::obj {
 namespace {
@@ -44,15 +44,9 @@ MapStatement read_map(Words words) {
   return map;
 }
 
-std::string in_lower_case(std::string_view word) {
-  std::string lower(word);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
-
 /// Whether a map_Bump names a map of normals rather than of heights: the statement is for both.
 bool names_normals(std::string_view path) {
-  const std::string name = in_lower_case(path.substr(path.rfind('/') + 1));
+  const std::string name = lower_case(path.substr(path.rfind('/') + 1));
   const std::string stem = name.substr(0, name.rfind('.'));
   const auto has = [&](std::string_view part) { return stem.find(part) != std::string::npos; };
   return has("norm") || has("nrm") || has("nmap") || stem.ends_with("_n") || stem.ends_with("_nor");
@@ -114,7 +108,7 @@ void read_number(const std::string& keyword, Words words, MtlMaterial& material)
 
 void read_statement(std::string_view statement, MtlMaterial& material) {
   Words words(statement);
-  const std::string keyword = in_lower_case(words.next());
+  const std::string keyword = lower_case(words.next());
   if (keyword == "kd")
     read_colour(words, material.colour);
   else if (keyword == "ke")
@@ -149,7 +143,7 @@ void read_mtl(std::string_view text, Pace& pace, MtlLibrary& library) {
     pace.add(1 + (at.next - at.begin) / 16);
     const auto statement = std::string_view(plain).substr(at.begin, at.end - at.begin);
     Words words(statement);
-    if (in_lower_case(words.next()) != "newmtl") {
+    if (lower_case(words.next()) != "newmtl") {
       read_statement(statement, *material);
       continue;
     }
