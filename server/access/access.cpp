@@ -21,7 +21,7 @@ constexpr auto kPublic = std::to_array<std::string_view>(
 /// Schemes have no case (RFC 9110, 11.1).
 bool is_bearer(std::string_view field) {
   const std::string_view scheme = field.substr(0, kScheme.size());
-  return !http::IgnoreCase()(scheme, kScheme) && !http::IgnoreCase()(kScheme, scheme);
+  return http::same_word(scheme, kScheme);
 }
 
 bool is_public(std::string_view route) { return std::ranges::count(kPublic, route) > 0; }

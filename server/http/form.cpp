@@ -25,10 +25,6 @@ constexpr std::string_view kBlanks = " \t";
       "filename=\"...\"\"; check the client.");
 }
 
-bool same_word(std::string_view left, std::string_view right) {
-  return !IgnoreCase()(left, right) && !IgnoreCase()(right, left);
-}
-
 void skip_blanks(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
 }
@@ -97,12 +93,10 @@ std::string_view disposition_in(std::string_view head) {
   return *found;
 }
 
-bool is_control_byte(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; }
-
 }  // namespace
 
 Part part_of_disposition(std::string_view value) {
-  if (std::ranges::any_of(value, is_control_byte)) wrong_disposition();
+  if (std::ranges::any_of(value, is_control)) wrong_disposition();
   skip_blanks(value);
   if (!same_word(take_until(value, " \t;"), "form-data")) wrong_disposition();
   Names names;

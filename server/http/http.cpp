@@ -36,6 +36,10 @@ std::string_view trim(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
+bool same_word(std::string_view left, std::string_view right) {
+  return std::ranges::equal(left, right, {}, lower_letter, lower_letter);
+}
+
 bool IgnoreCase::operator()(std::string_view left, std::string_view right) const {
   return std::ranges::lexicographical_compare(left, right, {}, lower_letter, lower_letter);
 }

@@ -139,6 +139,12 @@ using Observer = std::function<void(const Exchanged&)>;
 /// Without spaces and tabs at its ends (OWS of RFC 9110, 5.6.3).
 std::string_view trim(std::string_view text);
 
+/// Whether two names are equal but for the case of their letters.
+bool same_word(std::string_view left, std::string_view right);
+
+/// A control character other than a tab, which no field may hold (RFC 9110, 5.5).
+constexpr bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; }
+
 /// An answer with a JSON body.
 Response json_response(int status, std::string_view json);
 

@@ -40,10 +40,6 @@ struct Counts {
       "check the client.");
 }
 
-bool same(std::string_view left, std::string_view right) {
-  return !IgnoreCase()(left, right) && !IgnoreCase()(right, left);
-}
-
 /// Whether the text consists of letters, digits and these symbols.
 bool is_made_of(std::string_view text, std::string_view symbols) {
   return std::ranges::all_of(text, [&](char c) {
@@ -53,8 +49,6 @@ bool is_made_of(std::string_view text, std::string_view symbols) {
 }
 
 bool is_token(std::string_view text) { return !text.empty() && is_made_of(text, kTokenSymbols); }
-
-bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f'; }
 
 /// Of the form "Name: value".
 bool is_field(std::string_view line) {
@@ -77,7 +71,7 @@ std::vector<std::string_view> elements(std::string_view list) {
 /// Whether a comma-separated list has this word.
 bool lists(std::string_view list, std::string_view word) {
   return std::ranges::any_of(elements(list),
-                             [&](std::string_view element) { return same(element, word); });
+                             [&](std::string_view element) { return same_word(element, word); });
 }
 
 std::int64_t length_of(std::string_view digits) {
@@ -99,7 +93,7 @@ bool needs_length(std::string_view method) {
 /// must obey the rules of the Host header, which it replaces.
 std::size_t authority_of(std::string_view target) {
   for (const std::string_view scheme : {"http://", "https://"}) {
-    if (!same(target.substr(0, scheme.size()), scheme)) continue;
+    if (!same_word(target.substr(0, scheme.size()), scheme)) continue;
     const std::size_t end = std::min(target.find_first_of("/?#", scheme.size()), target.size());
     const std::string_view host = target.substr(scheme.size(), end - scheme.size());
     if (host.empty() || !is_made_of(host, kHostSymbols))
@@ -146,7 +140,7 @@ void refuse(Framing& framing, ErrorCode code, const std::string& what) {
 }
 
 void vet_single(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
-  const auto is_it = [&](std::string_view single) { return same(name, single); };
+  const auto is_it = [&](std::string_view single) { return same_word(name, single); };
   const auto at = std::ranges::find_if(kSingle, is_it) - kSingle.begin();
   if (at == std::ssize(kSingle)) return;
   std::optional<std::string_view>& before = counts.single.at(static_cast<std::size_t>(at));
@@ -167,8 +161,8 @@ void vet_host(std::string_view value, Framing& framing, Counts& counts) {
 }
 
 void vet_coding(std::string_view coding, Framing& framing) {
-  if (same(coding, "identity")) return;
-  const bool is_gzip = same(coding, "gzip") || same(coding, "x-gzip");
+  if (same_word(coding, "identity")) return;
+  const bool is_gzip = same_word(coding, "gzip") || same_word(coding, "x-gzip");
   framing.unknown_coding = framing.unknown_coding || !is_gzip || framing.gzip;
   framing.gzip = framing.gzip || is_gzip;
 }
@@ -186,22 +180,22 @@ void vet_codings(std::string_view value, Framing& framing) {
 void vet_field(std::string_view name, std::string_view value, Framing& framing, Counts& counts) {
   framing.fields.emplace_back(name, value);
   vet_single(name, value, framing, counts);
-  if (same(name, "host")) vet_host(value, framing, counts);
-  if (same(name, "content-length")) {
+  if (same_word(name, "host")) vet_host(value, framing, counts);
+  if (same_word(name, "content-length")) {
     ++counts.lengths;
     framing.content_length = length_of(value);
   }
-  if (same(name, "transfer-encoding")) {
+  if (same_word(name, "transfer-encoding")) {
     ++counts.codings;
     framing.chunked = true;
-    if (!same(value, "chunked")) malformed("Transfer-Encoding is not \"chunked\"; use that.");
+    if (!same_word(value, "chunked")) malformed("Transfer-Encoding is not \"chunked\"; use that.");
   }
-  if (same(name, "expect")) framing.awaits_continue = same(value, "100-continue");
-  if (same(name, "connection")) {
+  if (same_word(name, "expect")) framing.awaits_continue = same_word(value, "100-continue");
+  if (same_word(name, "connection")) {
     framing.last = framing.last || lists(value, "close");
     counts.stays = counts.stays || value == "Keep-Alive";  // as httplib spells it
   }
-  if (same(name, "content-encoding")) vet_codings(value, framing);
+  if (same_word(name, "content-encoding")) vet_codings(value, framing);
 }
 
 void vet_counts(const Counts& counts, std::string_view method, Framing& framing) {
@@ -237,7 +231,7 @@ void drop_ranges(std::string& head) {
   for (std::size_t end = head.find(kLineEnd, line); end != line; end = head.find(kLineEnd, line)) {
     const std::string_view field = std::string_view(head).substr(line, end - line);
     const std::size_t next = end + kLineEnd.size();
-    if (same(field.substr(0, field.find(':')), "range")) {
+    if (same_word(field.substr(0, field.find(':')), "range")) {
       head.erase(line, next - line);
     } else {
       line = next;
@@ -279,7 +273,7 @@ Framing vet_head(std::string_view head) {
 bool is_trailer(std::string_view line) {
   const std::string_view name = line.substr(0, line.find(':'));
   return is_field(line) && std::ranges::none_of(kNoTrailers, [&](std::string_view other) {
-           return same(name, other);
+           return same_word(name, other);
          });
 }
 
