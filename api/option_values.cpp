@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/parse_number.hpp"
 
 namespace unwrapd::api {
 namespace {
@@ -18,12 +18,9 @@ constexpr std::string_view kUnset = "none";  // null in JSON
 /// The text as a number if all of it is one; else as a string.
 template <class Number>
 Json number_of(std::string_view text) {
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const bool fits =
-      error == std::errc() && stop == end && std::isfinite(static_cast<double>(value));
-  return fits ? Json(value) : Json(text);
+  const std::optional<Number> value = parse_number<Number>(text);
+  const bool fits = value && std::isfinite(static_cast<double>(*value));
+  return fits ? Json(*value) : Json(text);
 }
 
 Json numbers_of(std::string_view text) {

@@ -1,10 +1,10 @@
 #include "client/server_url.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "client/failure.hpp"
 #include "core/base/lower_case.hpp"
+#include "core/base/parse_number.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -15,9 +15,8 @@ namespace {
 }
 
 bool is_port(std::string_view digits) {
-  int port = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-  return error == std::errc() && end == digits.data() + digits.size() && port > 0 && port < 65536;
+  const std::optional<int> port = parse_number<int>(digits);
+  return port && *port > 0 && *port < 65536;
 }
 
 bool is_host_character(char c) {

@@ -3,9 +3,9 @@
 #include <openssl/crypto.h>
 #include <sys/stat.h>
 
-#include <charconv>
 #include <optional>
 
+#include "core/base/parse_number.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/files.hpp"
 #include "server/base/identity.hpp"
@@ -23,16 +23,12 @@ std::string parameter(const http::Request& request, std::string_view name) {
   return found == request.query.end() ? std::string() : found->second;
 }
 
-std::optional<std::int64_t> number_in(const std::string& text) {
-  std::int64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, number);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
-  return number;
+std::int64_t number_or_zero(const std::string& text) {
+  return parse_number<std::int64_t>(text).value_or(0);
 }
 
 bool is_past(const std::string& expires) {
-  return number_in(expires).value_or(0) < now_ms() / kMsPerSecond;
+  return number_or_zero(expires) < now_ms() / kMsPerSecond;
 }
 
 /// What a link opens, as it is signed.
@@ -121,8 +117,8 @@ http::Ticket LinkSigner::check_ticket(const http::Request& request, const LinkKe
   const std::string max_bytes = parameter(request, kMaxBytesParameter);
   check_signature(request, opened_by_ticket(id, max_bytes), key);
   return {.id = id,
-          .max_bytes = number_in(max_bytes).value_or(0),
-          .expires = number_in(parameter(request, kExpiresParameter)).value_or(0)};
+          .max_bytes = number_or_zero(max_bytes),
+          .expires = number_or_zero(parameter(request, kExpiresParameter))};
 }
 
 std::multimap<std::string, std::string> unsigned_query(const http::Request& request) {

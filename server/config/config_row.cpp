@@ -1,19 +1,18 @@
 #include "server/config/config_row.hpp"
 
+#include "core/base/parse_number.hpp"
+
 namespace unwrapd::server::config {
 
 void expected(const std::string& what) { throw Error(ErrorCode::invalid_option, what); }
 
 std::int64_t number_in(Range range, const std::string& text) {
-  std::int64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, number);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == end;
-  if (!whole || number < range.least || number > range.most) {
+  const auto number = parse_number<std::int64_t>(text);
+  if (!number || *number < range.least || *number > range.most) {
     expected("a whole number from " + std::to_string(range.least) + " to " +
              std::to_string(range.most));
   }
-  return number;
+  return *number;
 }
 
 bool on_or_off(const std::string& text) {

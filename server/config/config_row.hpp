@@ -7,7 +7,6 @@
 // values at '#', and says of a wrong value neither where it came from nor what would be right.
 
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <functional>
 #include <limits>

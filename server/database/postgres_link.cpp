@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cstring>
 #include <system_error>
 
 #include "core/base/error.hpp"
+#include "core/base/parse_number.hpp"
 #include "server/base/errors.hpp"
 #include "server/base/files.hpp"
 #include "server/database/numbered_places.hpp"
@@ -45,10 +45,8 @@ bool is_away(std::string_view state) {
 }  // namespace
 
 std::int64_t number_in(std::string_view text) {
-  std::int64_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [read, failed] = std::from_chars(text.data(), end, number);
-  if (text.empty() || (failed == std::errc() && read == end)) return number;
+  if (text.empty()) return 0;
+  if (const auto number = parse_number<std::int64_t>(text)) return *number;
   throw InsideError(
       ErrorCode::storage_failed, "The server's store failed; try again later.",
       "The database of --database has " + std::string(text) + " where a whole number belongs.");

@@ -3,9 +3,9 @@
 #include <arpa/inet.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "core/base/error.hpp"
+#include "core/base/parse_number.hpp"
 
 namespace unwrapd::server::http {
 namespace {
@@ -41,10 +41,8 @@ bool same_start(const Bytes& left, const Bytes& right, int bits) {
 /// The bits of "/24"; `most` for an empty text; std::nullopt for anything else.
 std::optional<int> prefix_bits(std::string_view text, int most) {
   if (text.empty()) return most;
-  int bits = 0;
-  const auto parsed = std::from_chars(text.data() + 1, text.data() + text.size(), bits);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
-  if (!whole || bits < 0 || bits > most) return std::nullopt;
+  const std::optional<int> bits = parse_number<int>(text.substr(1));
+  if (!bits || *bits < 0 || *bits > most) return std::nullopt;
   return bits;
 }
 
@@ -120,16 +118,12 @@ std::string network_of(const std::string& address) {
 std::optional<Address> parse_address(std::string_view text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos || colon == 0) return std::nullopt;
-  Address address;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data() + colon + 1, end, address.port);
-  if (parsed.ec != std::errc() || parsed.ptr != end) return std::nullopt;
+  const std::optional<int> port = parse_number<int>(text.substr(colon + 1));
   std::string_view host = text.substr(0, colon);
   const bool bracketed = host.front() == '[' && host.back() == ']';
   if (bracketed) host = host.substr(1, host.size() - 2);
-  if (host.empty() || address.port < 0 || address.port > kMaxPort) return std::nullopt;
-  address.host = host;
-  return address;
+  if (host.empty() || !port || *port < 0 || *port > kMaxPort) return std::nullopt;
+  return Address{.host = std::string(host), .port = *port};
 }
 
 std::string to_text(const Address& address) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string>
 
+#include "core/base/parse_number.hpp"
 #include "server/http/http.hpp"
 
 namespace unwrapd::server::http {
@@ -75,13 +75,10 @@ bool lists(std::string_view list, std::string_view word) {
 }
 
 std::int64_t length_of(std::string_view digits) {
-  std::int64_t length = 0;
-  const char* end = digits.data() + digits.size();
-  const auto parsed = std::from_chars(digits.data(), end, length);
-  if (digits.empty() || digits.size() > kMaxLengthDigits || digits.front() == '-' ||
-      parsed.ptr != end)
+  const auto length = parse_number<std::int64_t>(digits);
+  if (!length || digits.size() > kMaxLengthDigits || digits.front() == '-')
     malformed("Content-Length is not a number of bytes; send one decimal number.");
-  return length;
+  return *length;
 }
 
 bool needs_length(std::string_view method) {

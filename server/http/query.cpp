@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "api/json.hpp"
+#include "core/base/parse_number.hpp"
 
 namespace unwrapd::server::http {
 namespace {
@@ -56,14 +57,12 @@ void check_once(const Request& request, const std::string& name) {
 }
 
 std::int64_t positive_number(const std::string& name, const std::string& text, std::int64_t most) {
-  std::int64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, number);
-  if (parsed.ec != std::errc() || parsed.ptr != end || number < 1 || number > most) {
+  const auto number = parse_number<std::int64_t>(text);
+  if (!number || *number < 1 || *number > most) {
     refuse_parameter(name, "The parameter " + name + " must be a number from 1 to " +
                                std::to_string(most) + "; correct it.");
   }
-  return number;
+  return *number;
 }
 
 }  // namespace unwrapd::server::http

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <optional>
 
 #include "core/base/error.hpp"
 #include "core/base/lower_case.hpp"
+#include "core/base/parse_number.hpp"
 
 namespace unwrapd::server::outbound {
 namespace {
@@ -82,10 +82,8 @@ bool take_scheme(std::string_view& rest, const UrlUse& use) {
 
 /// The number after the host, or none.
 std::optional<int> port_of(std::string_view text) {
-  int port = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), port);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
-  if (!whole || port < 1 || port > kMaxPort) return std::nullopt;
+  const std::optional<int> port = parse_number<int>(text);
+  if (!port || *port < 1 || *port > kMaxPort) return std::nullopt;
   return port;
 }
 

@@ -1,8 +1,8 @@
 #include "server/routes/event_streams.hpp"
 
-#include <charconv>
 #include <utility>
 
+#include "core/base/parse_number.hpp"
 #include "server/jobs/job_queue.hpp"
 
 namespace unwrapd::server::routes {
@@ -12,10 +12,8 @@ constexpr int kRetrySeconds = 5;
 
 std::optional<std::int64_t> parse_event_id(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  std::int64_t id = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, id);
-  if (parsed.ec != std::errc() || parsed.ptr != end || id < 0) {
+  const auto id = parse_number<std::int64_t>(text);
+  if (!id || *id < 0) {
     throw Error(ErrorCode::malformed_request,
                 "Last-Event-ID is not the id of an event; leave it out to read from the first.");
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/parse_number.hpp"
 #include "server/routes/job_routes.hpp"
 #include "server/routes/result_routes.hpp"
 #include "server/work/lambda_selection.hpp"
@@ -24,14 +25,11 @@ figure::Colouring parse_colour(const std::string& text) {
 }
 
 int parse_size(const std::string& text) {
-  int size = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, size);
-  if (error != std::errc() || stop != end || size < figure::kMinImageSize ||
-      size > figure::kMaxImageSize)
+  const std::optional<int> size = parse_number<int>(text);
+  if (!size || *size < figure::kMinImageSize || *size > figure::kMaxImageSize)
     refuse("size",
            "The size must be a whole number of pixels from 64 to 4096, or for layout.png page.");
-  return size;
+  return *size;
 }
 
 bool parse_switch(const std::string& name, const std::string& text) {
@@ -46,12 +44,10 @@ bool parse_background(const std::string& text) {
 }
 
 int parse_page(const std::string& text) {
-  int page = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, page);
-  if (error != std::errc() || stop != end || page < 1 || page > kMostPages)
+  const std::optional<int> page = parse_number<int>(text);
+  if (!page || *page < 1 || *page > kMostPages)
     refuse("page", "The page must be a whole number from 1 to 100.");
-  return page;
+  return *page;
 }
 
 /// An angle in degrees, at the start of a text, which it is taken from.

@@ -1,11 +1,11 @@
 #include "server/work/lambda_selection.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <vector>
 
 #include "core/base/error.hpp"
+#include "core/base/parse_number.hpp"
 
 namespace unwrapd::server::work {
 namespace {
@@ -23,11 +23,8 @@ std::vector<double> lambdas_of(const store::JobRecord& job) {
 }
 
 double number_of(const std::string& text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const bool whole = error == std::errc() && stop == end;
-  return whole ? value : std::numeric_limits<double>::quiet_NaN();  // equal to none
+  constexpr double kEqualToNone = std::numeric_limits<double>::quiet_NaN();
+  return parse_number<double>(text).value_or(kEqualToNone);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "core/asset/mesh_files/text_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "core/asset/base/words.hpp"
 #include "core/asset/mesh_files/mesh_file.hpp"
+#include "core/base/parse_number.hpp"
 
 namespace unwrapd::asset::mesh_files {
 namespace {
@@ -73,12 +73,11 @@ double TextReader::number() {
 std::int64_t TextReader::whole(std::int64_t least, std::int64_t most) {
   std::string_view word = next();
   if (word.starts_with('+')) word.remove_prefix(1);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < least || value > most)
+  const auto value = parse_number<std::int64_t>(word);
+  if (!value || *value < least || *value > most)
     refuse("a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
            " is expected where " + shown(word));
-  return value;
+  return *value;
 }
 
 }  // namespace unwrapd::asset::mesh_files
