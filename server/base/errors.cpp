@@ -3,6 +3,7 @@
 #include <new>
 #include <system_error>
 
+#include "api/json.hpp"
 #include "server/base/files.hpp"
 
 namespace unwrapd::server {
@@ -24,6 +25,10 @@ StoreAway::StoreAway(StorePart part, const std::string& reason, bool in_doubt)
                                            : "The bucket of --blobs cannot be reached (") +
               reason + ")."),
       in_doubt_(in_doubt) {}
+
+void refuse_option(const std::string& name, const std::string& what) {
+  throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(name));
+}
 
 std::string reason_of(const std::exception& error) {
   if (const auto* inside = dynamic_cast<const InsideError*>(&error)) return inside->reason();

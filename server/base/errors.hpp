@@ -55,6 +55,9 @@ class InsideError : public Error {
   std::string reason_;
 };
 
+/// Throws Error{invalid_option} whose place is the option, parameter or member of this name.
+[[noreturn]] void refuse_option(const std::string& name, const std::string& what);
+
 /// What the log says of an error; where a limit of this process is too small, which one to raise.
 std::string reason_of(const std::exception& error);
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "api/json.hpp"
 #include "core/base/parse_number.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::http {
 namespace {
@@ -26,8 +26,8 @@ std::string decoded(std::string_view text) {
 
 }  // namespace
 
-std::multimap<std::string, std::string> parse_query(std::string_view text) {
-  std::multimap<std::string, std::string> query;
+api::Query parse_query(std::string_view text) {
+  api::Query query;
   while (!text.empty()) {
     const std::string_view parameter = text.substr(0, text.find('&'));
     text.remove_prefix(std::min(parameter.size() + 1, text.size()));
@@ -39,28 +39,23 @@ std::multimap<std::string, std::string> parse_query(std::string_view text) {
   return query;
 }
 
-void refuse_parameter(const std::string& name, const std::string& what) {
-  throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(name));
-}
-
 void refuse_unknown(const std::string& name) {
-  refuse_parameter(name, "There is no parameter of this name here; see /openapi.yaml.");
+  refuse_option(name, "There is no parameter of this name here; see /openapi.yaml.");
 }
 
 void refuse_all(const Request& request) {
   if (!request.query.empty()) refuse_unknown(request.query.begin()->first);
 }
 
-void check_once(const Request& request, const std::string& name) {
-  if (request.query.count(name) > 1)
-    refuse_parameter(name, "The parameter is given twice; give it once.");
+void check_once(const api::Query& query, const std::string& name) {
+  if (query.count(name) > 1) refuse_option(name, "The parameter is given twice; give it once.");
 }
 
 std::int64_t positive_number(const std::string& name, const std::string& text, std::int64_t most) {
   const auto number = parse_number<std::int64_t>(text);
   if (!number || *number < 1 || *number > most) {
-    refuse_parameter(name, "The parameter " + name + " must be a number from 1 to " +
-                               std::to_string(most) + "; correct it.");
+    refuse_option(name, "The parameter " + name + " must be a number from 1 to " +
+                            std::to_string(most) + "; correct it.");
   }
   return *number;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "api/options.hpp"
 #include "server/http/http.hpp"
 
 namespace unwrapd::server::http {
@@ -14,13 +15,12 @@ namespace unwrapd::server::http {
 /// "a=b&c" as names and values, percent-decoded (application/x-www-form-urlencoded in the URL
 /// standard, 5.1): "+" is a space, the first "=" ends a name, "&&" holds no parameter, and a name
 /// may be empty. A percent sign without two digits stays.
-std::multimap<std::string, std::string> parse_query(std::string_view text);
+api::Query parse_query(std::string_view text);
 
-[[noreturn]] void refuse_parameter(const std::string& name, const std::string& what);
 [[noreturn]] void refuse_unknown(const std::string& name);
 /// For calls without parameters.
 void refuse_all(const Request& request);
-void check_once(const Request& request, const std::string& name);
+void check_once(const api::Query& query, const std::string& name);
 
 /// A number from 1 to most.
 std::int64_t positive_number(const std::string& name, const std::string& text, std::int64_t most);

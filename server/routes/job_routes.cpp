@@ -161,8 +161,7 @@ constexpr int kMaxLimit = 200;
 void set_filter(store::JobFilter& filter, const std::string& name, const std::string& text) {
   if (name == "state") {
     filter.state = api::state_named(text);
-    if (!filter.state)
-      http::refuse_parameter(name, "There is no such state of jobs; see /openapi.yaml.");
+    if (!filter.state) refuse_option(name, "There is no such state of jobs; see /openapi.yaml.");
   } else if (name == "name") {
     filter.name = uploads::checked_job_name(text);
   } else if (name == "limit") {
@@ -181,7 +180,7 @@ http::Response list_jobs(store::JobStore& store, const http::Request& request) {
   store::JobFilter filter;
   if (!request.caller.sees_all) filter.owner = request.caller.owner;
   for (const auto& [name, text] : request.query) {
-    http::check_once(request, name);
+    http::check_once(request.query, name);
     set_filter(filter, name, text);
   }
   const int limit = filter.limit++;  // one more tells whether another page follows

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "server/base/clock.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/http/query.hpp"
 
@@ -40,7 +41,7 @@ http::Response get_link(const store::JobRecord& job, const access::LinkSigner& s
   std::string file(kLinked.front());
   std::int64_t seconds = kUsualSeconds;
   for (const auto& [name, text] : request.query) {
-    http::check_once(request, name);
+    http::check_once(request.query, name);
     if (name == "file") {
       file = text;
     } else if (name == "seconds") {
@@ -50,7 +51,7 @@ http::Response get_link(const store::JobRecord& job, const access::LinkSigner& s
     }
   }
   if (std::ranges::count(kLinked, file) == 0)
-    http::refuse_parameter("file", "A job has no such file; see /openapi.yaml.");
+    refuse_option("file", "A job has no such file; see /openapi.yaml.");
   const std::int64_t expires_ms = now_ms() + seconds * kMsPerSecond;
   const std::string url =
       signer.sign(linked_path(job.id, file), expires_ms / kMsPerSecond, link_key(request.caller));
@@ -66,7 +67,7 @@ struct TicketTerms {
 TicketTerms ticket_terms(const http::Request& request, std::int64_t most_bytes) {
   TicketTerms terms{.max_bytes = most_bytes};
   for (const auto& [name, text] : request.query) {
-    http::check_once(request, name);
+    http::check_once(request.query, name);
     if (name == "seconds") {
       terms.seconds = http::positive_number(name, text, kDay);
     } else if (name == "max_bytes") {

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "core/base/parse_number.hpp"
+#include "server/base/errors.hpp"
+#include "server/http/query.hpp"
 #include "server/routes/job_routes.hpp"
 #include "server/routes/result_routes.hpp"
 #include "server/work/lambda_selection.hpp"
@@ -14,39 +16,37 @@ namespace {
 
 constexpr int kMostPages = 100;
 
-[[noreturn]] void refuse(const std::string& name, const std::string& what) {
-  throw Error(ErrorCode::invalid_option, what, "/" + name);
-}
-
 figure::Colouring parse_colour(const std::string& text) {
   const std::optional<figure::Colouring> colouring = figure::colouring_named(text);
-  if (!colouring) refuse("colour", "The colour is unknown; use stretch, angle, area or flips.");
+  if (!colouring)
+    refuse_option("colour", "The colour is unknown; use stretch, angle, area or flips.");
   return *colouring;
 }
 
 int parse_size(const std::string& text) {
   const std::optional<int> size = parse_number<int>(text);
   if (!size || *size < figure::kMinImageSize || *size > figure::kMaxImageSize)
-    refuse("size",
-           "The size must be a whole number of pixels from 64 to 4096, or for layout.png page.");
+    refuse_option(
+        "size",
+        "The size must be a whole number of pixels from 64 to 4096, or for layout.png page.");
   return *size;
 }
 
 bool parse_switch(const std::string& name, const std::string& text) {
-  if (text != "0" && text != "1") refuse(name, "The parameter must be 0 or 1.");
+  if (text != "0" && text != "1") refuse_option(name, "The parameter must be 0 or 1.");
   return text == "1";
 }
 
 bool parse_background(const std::string& text) {
   if (text != "page" && text != "none")
-    refuse("background", "The background is unknown; use page or none.");
+    refuse_option("background", "The background is unknown; use page or none.");
   return text == "page";
 }
 
 int parse_page(const std::string& text) {
   const std::optional<int> page = parse_number<int>(text);
   if (!page || *page < 1 || *page > kMostPages)
-    refuse("page", "The page must be a whole number from 1 to 100.");
+    refuse_option("page", "The page must be a whole number from 1 to 100.");
   return *page;
 }
 
@@ -78,9 +78,10 @@ void set_view(work::Picture& picture, const std::string& text) {
   picture.aspect = figure::aspect_named(text);
   if (!picture.aspect) picture.aspect = parse_angles(text);
   if (!picture.aspect)
-    refuse("view",
-           "The view must be auto, front, back, left, right, top, bottom, turntable, or two angles "
-           "in degrees such as 30,20, from -360 to 360 and from -90 to 90.");
+    refuse_option(
+        "view",
+        "The view must be auto, front, back, left, right, top, bottom, turntable, or two angles "
+        "in degrees such as 30,20, from -360 to 360 and from -90 to 90.");
 }
 
 /// Sets a parameter of layouts; false when it is none.
@@ -115,7 +116,8 @@ void settle_layout(work::Picture& picture, const std::multimap<std::string, std:
   if (!picture.wireframe) return;
   for (const char* name : {"colour", "legend"})
     if (query.contains(name) && (picture.legend || std::string_view(name) == "colour"))
-      refuse(name, "A wireframe shows no colours, and has no legend of them; leave this out.");
+      refuse_option(name,
+                    "A wireframe shows no colours, and has no legend of them; leave this out.");
 }
 
 http::Response get_picture(results::PictureStore& pictures, const store::JobRecord& job,
@@ -137,14 +139,14 @@ work::Picture picture_of(work::PictureKind kind,
   work::Picture picture{.kind = kind};
   const bool is_layout = kind != work::PictureKind::preview_png;
   for (const auto& [name, text] : query) {
-    if (query.count(name) > 1) refuse(name, "The parameter is given twice; give it once.");
+    http::check_once(query, name);
     if (is_layout && set_layout(picture, name, text)) continue;
     if (name == "view" && !is_layout) {
       set_view(picture, text);
     } else if (name == "size" && kind != work::PictureKind::layout_svg) {
       set_size(picture, text);
     } else {
-      refuse(name, "This picture has no parameter of this name; see /openapi.yaml.");
+      refuse_option(name, "This picture has no parameter of this name; see /openapi.yaml.");
     }
   }
   if (is_layout) settle_layout(picture, query);

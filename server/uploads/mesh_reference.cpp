@@ -2,6 +2,7 @@
 
 #include "api/options.hpp"
 #include "core/base/error.hpp"
+#include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/uploads/job_name.hpp"
 
@@ -10,30 +11,26 @@ namespace {
 
 constexpr std::size_t kMaxBytes = api::kMaxOptionsBytes + 1024;
 
-[[noreturn]] void refuse_member(const std::string& member, const std::string& what) {
-  throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(member));
-}
-
 std::string mesh_of(const api::Json& value) {
   if (!value.is_string() || !is_sha256(value.get_ref<const std::string&>()))
-    refuse_member("mesh", "mesh must be a SHA-256; send its 64 lowercase hex digits.");
+    refuse_option("mesh", "mesh must be a SHA-256; send its 64 lowercase hex digits.");
   return value;
 }
 
 std::string source_of(const api::Json& value) {
-  if (!value.is_string()) refuse_member("source", "source must be an address; send a string.");
+  if (!value.is_string()) refuse_option("source", "source must be an address; send a string.");
   std::string source = value;
-  if (source.empty()) refuse_member("source", "source is empty; send the address of a mesh.");
+  if (source.empty()) refuse_option("source", "source is empty; send the address of a mesh.");
   return source;
 }
 
 std::string name_of(const api::Json& value) {
-  if (!value.is_string()) refuse_member(kNameParameter, "The name of a job must be a string.");
+  if (!value.is_string()) refuse_option(kNameParameter, "The name of a job must be a string.");
   return checked_job_name(value);
 }
 
 std::string options_of(const api::Json& value) {
-  if (!value.is_object()) refuse_member("options", "The options must be a JSON object.");
+  if (!value.is_object()) refuse_option("options", "The options must be a JSON object.");
   return value.dump();
 }
 
@@ -56,17 +53,17 @@ MeshReference parse_mesh_reference(std::string_view text) {
     } else if (member == "options") {
       reference.options = options_of(value);
     } else {
-      refuse_member(
+      refuse_option(
           member,
           "The JSON has an unknown member; its members are mesh or source, name and options.");
     }
   }
   if (reference.sha256.empty() && reference.source.empty())
-    refuse_member("mesh",
+    refuse_option("mesh",
                   "The member mesh is missing; send the SHA-256 of a stored mesh, or an address as "
                   "source.");
   if (!reference.sha256.empty() && !reference.source.empty())
-    refuse_member("source", "mesh and source name two meshes; send one of them.");
+    refuse_option("source", "mesh and source name two meshes; send one of them.");
   return reference;
 }
 

@@ -4,15 +4,11 @@
 #include <limits>
 #include <vector>
 
-#include "core/base/error.hpp"
 #include "core/base/parse_number.hpp"
+#include "server/base/errors.hpp"
 
 namespace unwrapd::server::work {
 namespace {
-
-[[noreturn]] void refuse(const std::string& name, const std::string& what) {
-  throw Error(ErrorCode::invalid_option, what, "/" + api::pointer_token(name));
-}
 
 /// The lambdas of the job's maps, in their order; empty when its method has no lambda.
 std::vector<double> lambdas_of(const store::JobRecord& job) {
@@ -41,20 +37,21 @@ std::size_t chosen_map(const store::JobRecord& job,
                        const std::multimap<std::string, std::string>& query) {
   const auto [first, last] = query.equal_range("lambda");
   if (first == last) return 0;
-  if (std::next(first) != last) refuse("lambda", "lambda is given twice; give it once.");
+  if (std::next(first) != last) refuse_option("lambda", "lambda is given twice; give it once.");
   const std::vector<double> lambdas = lambdas_of(job);
-  if (lambdas.empty()) refuse("lambda", "The method of the job has no lambda; leave lambda out.");
+  if (lambdas.empty())
+    refuse_option("lambda", "The method of the job has no lambda; leave lambda out.");
   const auto found = std::ranges::find(lambdas, number_of(first->second));
   if (found == lambdas.end())
-    refuse("lambda", "The job has no map for this lambda; it has maps for " +
-                         job.options.at("lambda").dump() + ".");
+    refuse_option("lambda", "The job has no map for this lambda; it has maps for " +
+                                job.options.at("lambda").dump() + ".");
   return static_cast<std::size_t>(found - lambdas.begin());
 }
 
 std::size_t only_chosen_map(const store::JobRecord& job,
                             const std::multimap<std::string, std::string>& query) {
   for (const auto& [name, text] : query)
-    if (name != "lambda") refuse(name, "This call has no such parameter, only lambda.");
+    if (name != "lambda") refuse_option(name, "This call has no such parameter, only lambda.");
   return chosen_map(job, query);
 }
 

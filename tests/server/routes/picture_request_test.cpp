@@ -78,6 +78,11 @@ TEST(PictureOf, TemplatesHaveNoLegendUnlessTheyAreColoured) {
   EXPECT_EQ(refused_at(PictureKind::layout_png, {{"view", "front"}}), "/view");
 }
 
+TEST(PictureOf, TellsUnknownAndRepeatedParametersByJsonPointers) {  // RFC 6901, 3
+  EXPECT_EQ(refused_at(PictureKind::layout_png, {{"a/b~", "1"}}), "/a~1b~0");
+  EXPECT_EQ(refused_at(PictureKind::layout_png, {{"page", "1"}, {"page", "2"}}), "/page");
+}
+
 TEST(PictureOf, AViewIsANameOrTwoAngles) {
   const auto view = [](const std::string& text) {
     return picture_of(PictureKind::preview_png, {{"view", text}});
