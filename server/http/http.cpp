@@ -61,6 +61,12 @@ Response json_response(int status, std::string_view json) {
   return response;
 }
 
+Response uncached_json_response(int status, std::string_view json) {
+  Response response = json_response(status, json);
+  response.headers.emplace_back("Cache-Control", "no-store");
+  return response;
+}
+
 Response error_response(const Error& error, std::string_view job) {
   api::Json problem = api::problem(error, job);
   for (const char* member : {"detail", "pointer"})

@@ -147,6 +147,8 @@ constexpr bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c
 
 /// An answer with a JSON body.
 Response json_response(int status, std::string_view json);
+/// One that no cache may store: what it tells may change at any time.
+Response uncached_json_response(int status, std::string_view json);
 
 /// The problem document of an error, with Retry-After for RetryLater.
 Response error_response(const Error& error, std::string_view job = {});

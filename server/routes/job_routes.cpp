@@ -31,9 +31,7 @@ http::Response job_response(int status, const JobServices& services, const store
   const bool is_running = record.state == api::JobState::running;
   const auto feed = is_running ? services.events.find_or_follow(record) : nullptr;
   if (feed) job.progress = feed->progress();
-  http::Response response = http::json_response(status, api::to_json(job).dump());
-  response.headers.emplace_back("Cache-Control", "no-store");
-  return response;
+  return http::uncached_json_response(status, api::to_json(job).dump());
 }
 
 /// Waits for the end of a job, at most so long.
@@ -190,9 +188,7 @@ http::Response list_jobs(store::JobStore& store, const http::Request& request) {
   api::Json page = {{"jobs", api::Json::array()}, {"next", nullptr}};
   for (const store::JobRecord& job : jobs) page["jobs"].push_back(api::to_json(store::to_job(job)));
   if (more) page["next"] = std::to_string(jobs.back().seq);
-  http::Response response = http::json_response(200, page.dump());
-  response.headers.emplace_back("Cache-Control", "no-store");
-  return response;
+  return http::uncached_json_response(200, page.dump());
 }
 
 void add_submission_routes(std::vector<http::Route>& routes, const JobServices& services) {

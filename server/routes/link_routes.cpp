@@ -28,12 +28,6 @@ std::string linked_path(const std::string& id, const std::string& file) {
   return file == "job" ? api::job_path(id) : api::job_path(id) + "/" + file;
 }
 
-http::Response fresh_json(const api::Json& json) {
-  http::Response response = http::json_response(200, json.dump());
-  response.headers.emplace_back("Cache-Control", "no-store");
-  return response;
-}
-
 /// A URL that opens one resource of a job without an API key, for a time. Parameters: file (default
 /// result) and seconds (1 to 604800; default 3600). Throws Error{invalid_option}.
 http::Response get_link(const store::JobRecord& job, const access::LinkSigner& signer,
@@ -55,7 +49,8 @@ http::Response get_link(const store::JobRecord& job, const access::LinkSigner& s
   const std::int64_t expires_ms = now_ms() + seconds * kMsPerSecond;
   const std::string url =
       signer.sign(linked_path(job.id, file), expires_ms / kMsPerSecond, link_key(request.caller));
-  return fresh_json({{"url", url}, {"expires", rfc3339(expires_ms)}});
+  const api::Json link = {{"url", url}, {"expires", rfc3339(expires_ms)}};
+  return http::uncached_json_response(200, link.dump());
 }
 
 struct TicketTerms {
@@ -94,8 +89,9 @@ http::Response post_tickets(const JobServices& services, const http::Request& re
                                         .max_bytes = terms.max_bytes,
                                         .expires = expires_ms / kMsPerSecond},
                                        link_key(request.caller)));
-  return fresh_json(
-      {{"urls", urls}, {"expires", rfc3339(expires_ms)}, {"max_bytes", terms.max_bytes}});
+  const api::Json tickets = {
+      {"urls", urls}, {"expires", rfc3339(expires_ms)}, {"max_bytes", terms.max_bytes}};
+  return http::uncached_json_response(200, tickets.dump());
 }
 
 }  // namespace

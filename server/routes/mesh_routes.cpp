@@ -17,17 +17,11 @@ api::Json mesh_json(const uploads::Meshes& meshes, const store::MeshRecord& mesh
                                 .expires = rfc3339(mesh.kept_since_ms + kept_ms)});
 }
 
-http::Response mesh_response(int status, const api::Json& mesh) {
-  http::Response response = http::json_response(status, mesh.dump());
-  response.headers.emplace_back("Cache-Control", "no-store");
-  return response;
-}
-
 http::Response put_mesh(uploads::Meshes& meshes, const http::Request& request,
                         std::chrono::seconds kept) {
   const uploads::SentMesh sent = meshes.receive(request, request.sha256);
-  http::Response response =
-      mesh_response(sent.is_new ? 201 : 200, mesh_json(meshes, sent.mesh, kept));
+  http::Response response = http::uncached_json_response(sent.is_new ? 201 : 200,
+                                                         mesh_json(meshes, sent.mesh, kept).dump());
   response.headers.emplace_back("Location", api::mesh_path(request.sha256));
   return response;
 }
@@ -37,7 +31,7 @@ http::Response get_mesh(uploads::Meshes& meshes, const http::Request& request,
   const store::MeshRecord mesh = meshes.find(request.caller.owner, request.sha256);
   api::Json json = mesh_json(meshes, mesh, kept);
   json.update(meshes.analysis(mesh, request.has_left));
-  return mesh_response(200, json);
+  return http::uncached_json_response(200, json.dump());
 }
 
 }  // namespace
