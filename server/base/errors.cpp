@@ -48,6 +48,10 @@ RetryLater draining() {
           kDrainRetrySeconds};
 }
 
+RetryLater shutting_down() {
+  return {ErrorCode::draining, "The server is shutting down; use another server.", 1};
+}
+
 RetryLater no_room(int seconds) {
   return {ErrorCode::storage_full, std::string(kStorageFull), seconds};
 }
@@ -85,6 +89,10 @@ Error cancelled_by_owner() {
   return {ErrorCode::cancelled, "The job was cancelled; send it again to run it."};
 }
 
+Error job_stopped() {
+  return {ErrorCode::cancelled, "The job was stopped; send it again to run it."};
+}
+
 Error unreadable_job() {
   return {ErrorCode::storage_corrupt,
           "The stored data of this job cannot be read; send the job again."};
@@ -94,6 +102,12 @@ Error poison() {
   return {ErrorCode::poison,
           "The server ended several times while this job ran, so the job is not tried again. Check "
           "the mesh, or send a smaller part of it."};
+}
+
+Error too_many_crashes() {
+  return {ErrorCode::poison,
+          "The process of this job ended three times while the job ran, so the job is not tried "
+          "again. Check the mesh, or send a smaller part of it."};
 }
 
 Error ticket_spent() {

@@ -63,6 +63,7 @@ std::string reason_of(const std::exception& error);
 
 // The queue refuses a job, or gives one up.
 RetryLater draining();
+RetryLater shutting_down();  ///< of /readyz
 RetryLater no_room(int seconds);
 RetryLater queue_full(int places, int seconds);
 RetryLater too_many_jobs(std::int64_t most, int seconds);
@@ -70,8 +71,10 @@ Error quota_exceeded(std::int64_t most_bytes);
 Error unknown_job();
 Error another_question();
 Error cancelled_by_owner();
+Error job_stopped();
 Error unreadable_job();
 Error poison();
+Error too_many_crashes();  ///< of the process of one job
 
 /// An upload ticket takes one job.
 Error ticket_spent();

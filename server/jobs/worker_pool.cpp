@@ -43,12 +43,6 @@ store::JobOutcome outcome_of(const Error& error, const RunningJob& job, int max_
   return store::ended(JobState::failed, late, job.record.id);
 }
 
-Error too_many_crashes() {
-  return {ErrorCode::poison,
-          "The process of this job ended three times while the job ran, so the job is not tried "
-          "again. Check the mesh, or send a smaller part of it."};
-}
-
 /// Asks a job to stop when its time is up, and gives it up when it does not stop then. Watches
 /// while it exists. Each function is called at most once, by a thread of its own.
 class Watchdog {
@@ -180,9 +174,8 @@ void WorkerPool::give_up(RunningJob& job, store::QuotaReservation& reservation) 
   const TraceScope trace(job.feed->trace());
   lose_thread(job);
   config_.on_force("given_up");
-  const Error stopped(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
   try {
-    queue_.finish(job, outcome_of(stopped, job, limits_.max_job_seconds),
+    queue_.finish(job, outcome_of(job_stopped(), job, limits_.max_job_seconds),
                   [&] { reservation.give_up(); });
   } catch (const std::exception& error) {  // the store: the job is run again at the next start
     log_.error("a worker failed", {{"reason", reason_of(error)}});
@@ -223,8 +216,7 @@ store::LoadedInput WorkerPool::load(const RunningJob& job) const {
     try {
       return {blobs_, job.record};
     } catch (const StoreAway& away) {
-      if (job.stop.stop_requested())
-        throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
+      if (job.stop.stop_requested()) throw job_stopped();
       log_.warning("a job waits for its files",
                    {{"job", job.record.id}, {"reason", reason_of(away)}});
     }

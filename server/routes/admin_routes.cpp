@@ -12,8 +12,7 @@ constexpr std::string_view kOk = R"({"status":"ok"})";
 /// Whether the server takes jobs: not while it drains, nor while they cannot be stored or worked
 /// on, nor while accepted jobs wait for room on the disk. A full queue passes by itself.
 http::Response answer(const Readiness& readiness) {
-  if (readiness.queue.draining())
-    throw RetryLater(ErrorCode::draining, "The server is shutting down; use another server.", 1);
+  if (readiness.queue.draining()) throw shutting_down();
   readiness.store.check_writable();
   if (const std::optional<RetryLater> shortage = readiness.queue.shortage()) throw *shortage;
   if (!readiness.has_workers())

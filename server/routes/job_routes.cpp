@@ -209,7 +209,7 @@ void add_submission_routes(std::vector<http::Route>& routes, const JobServices& 
 store::JobRecord find_job(store::JobStore& store, const http::Request& request) {
   std::optional<store::JobRecord> job = store.find(request.id);
   const bool seen = job && (request.caller.sees_all || job->owner == request.caller.owner);
-  if (!seen) throw Error(ErrorCode::not_found, "There is no job of this id; check the address.");
+  if (!seen) throw unknown_job();
   return std::move(*job);
 }
 

@@ -5,9 +5,9 @@
 
 #include "api/options.hpp"
 #include "api/report.hpp"
-#include "core/base/error.hpp"
 #include "core/base/shared_cache.hpp"
 #include "core/unwrap.hpp"
+#include "server/base/errors.hpp"
 #include "server/blobs/blob_store.hpp"
 #include "server/store/stored_input.hpp"
 #include "server/work/lambda_selection.hpp"
@@ -20,8 +20,7 @@ namespace {
 constexpr double kWriteFraction = 0.95;  // of the job is done when writing begins
 
 void check_stop(const JobTask& task) {
-  if (task.stop.stop_requested())
-    throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
+  if (task.stop.stop_requested()) throw job_stopped();
 }
 
 Progress progress_of(const JobTask& task, JobOutput& output, StageTimer& clock) {

@@ -13,6 +13,7 @@
 #include <functional>
 
 #include "core/base/error.hpp"
+#include "server/base/errors.hpp"
 #include "server/work/job_process.hpp"
 
 namespace unwrapd::server::work {
@@ -107,7 +108,7 @@ std::optional<StartedWorker> WorkerProcess::release() {
 
 void WorkerProcess::reap() {
   const int status = worker_.end();
-  if (kill_at_) throw Error(ErrorCode::cancelled, "The job was stopped; send it again to run it.");
+  if (kill_at_) throw job_stopped();
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     throw Error(ErrorCode::time_limit, "The job took more processor time than is allowed.");
   throw WorkerCrashed(end_of(status));
