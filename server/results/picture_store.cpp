@@ -72,27 +72,16 @@ bool is_kept(const work::Picture& picture) {
 
 StoredResult PictureStore::open(const store::JobRecord& job, std::size_t map,
                                 const work::Picture& picture, const http::HasLeft& has_left) {
-  const std::string name = file_name(map, picture);
-  std::optional<StoredResult> kept;
-  if (is_kept(picture)) kept = find_whole(blobs_, job.id, name);
-  std::shared_ptr<void> place;
-  if (!kept) {
-    place =
-        renderer_.enter(job, {.file = name,
-                              .map = map,
-                              .bytes = bytes_of(picture),
-                              .is_costly = !is_kept(picture) && longest_side(picture) > kLargeSize,
-                              .has_left = has_left});
-    kept = find_whole(blobs_, job.id, name);  // drawn meanwhile
-  }
-  if (kept) {
-    ++counts_.hits;
-    return std::move(*kept);
-  }
-  const std::string bytes =
-      renderer_.render(job, {.map = map, .picture = picture, .format = {}}, has_left);
-  counts_.made(bytes);
-  return is_kept(picture) ? keep(blobs_, job, name, bytes) : lend(blobs_, bytes);
+  const bool kept = is_kept(picture);
+  const WantedFile wanted{.file = file_name(map, picture),
+                          .map = map,
+                          .bytes = bytes_of(picture),
+                          .is_kept = kept,
+                          .is_costly = !kept && longest_side(picture) > kLargeSize,
+                          .has_left = has_left};
+  return files_.open(job, wanted, [&] {
+    return renderer_.render(job, {.map = map, .picture = picture, .format = {}}, has_left);
+  });
 }
 
 }  // namespace unwrapd::server::results

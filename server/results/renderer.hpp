@@ -20,6 +20,7 @@ struct WantedFile {
   std::string file;
   std::size_t map = 0;            ///< that it is made from
   std::size_t bytes = 0;          ///< of memory that it takes besides what its mesh does
+  bool is_kept = true;            ///< with the job, for the next request
   bool is_costly = false;         ///< takes seconds and is not kept
   const http::HasLeft& has_left;  ///< of the request
 };

@@ -4,7 +4,6 @@
 #include "server/base/errors.hpp"
 #include "server/base/identity.hpp"
 #include "server/http/media_types.hpp"
-#include "server/results/result_store.hpp"
 #include "server/uploads/job_input.hpp"
 
 namespace unwrapd::server::uploads {
@@ -133,21 +132,10 @@ store::JobInput Meshes::share(const std::string& owner, const std::string& sha25
 
 api::Json Meshes::analysis(const store::MeshRecord& mesh, const http::HasLeft& has_left) {
   const store::JobRecord job = as_job(mesh);
-  const std::string file(kAnalysisFile);
-  std::optional<results::StoredResult> kept = results::find_whole(blobs_, mesh.id, file);
-  std::shared_ptr<void> place;
-  if (!kept) {
-    place = renderer_.enter(job, {.file = file, .map = 0, .has_left = has_left});
-    kept = results::find_whole(blobs_, mesh.id, file);  // made meanwhile
-  }
-  if (kept) {
-    ++counts_.hits;
-  } else {
-    const std::string bytes = analyse(renderer_, job, has_left);
-    counts_.made(bytes);
-    kept = results::keep(blobs_, job, file, bytes);
-  }
-  return api::Json::parse(kept->file->read(0, static_cast<std::size_t>(kept->file->size())));
+  const results::StoredResult kept =
+      analyses_.open(job, {.file = std::string(kAnalysisFile), .has_left = has_left},
+                     [&] { return analyse(renderer_, job, has_left); });
+  return api::Json::parse(kept.file->read(0, static_cast<std::size_t>(kept.file->size())));
 }
 
 }  // namespace unwrapd::server::uploads

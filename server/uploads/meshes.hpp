@@ -8,10 +8,9 @@
 #include <string>
 
 #include "api/mesh.hpp"
-#include "server/base/metrics.hpp"
 #include "server/blobs/blob_store.hpp"
 #include "server/http/http.hpp"
-#include "server/results/renderer.hpp"
+#include "server/results/files_on_request.hpp"
 #include "server/store/job_store.hpp"
 #include "server/store/mesh_store.hpp"
 #include "server/uploads/upload_budget.hpp"
@@ -28,7 +27,12 @@ class Meshes {
  public:
   Meshes(store::MeshStore& store, store::JobStore& jobs, blobs::BlobStore& blobs,
          const UploadRooms& rooms, results::Renderer& renderer)
-      : store_(store), jobs_(jobs), blobs_(blobs), rooms_(rooms), renderer_(renderer) {}
+      : store_(store),
+        jobs_(jobs),
+        blobs_(blobs),
+        rooms_(rooms),
+        renderer_(renderer),
+        analyses_(blobs, renderer) {}
 
   /// Stores the body of a request as the mesh of this digest. Throws Error: digest_mismatch and
   /// what BodyReader throws, unsupported_media_type, unknown_format (of an empty body),
@@ -49,7 +53,7 @@ class Meshes {
   api::Json analysis(const store::MeshRecord& mesh, const http::HasLeft& has_left = {});
 
   [[nodiscard]] Moment now() const { return jobs_.now(); }
-  [[nodiscard]] const FileCounts& counts() const { return counts_; }
+  [[nodiscard]] const FileCounts& counts() const { return analyses_.counts(); }
 
  private:
   [[nodiscard]] SentMesh settle(const http::Request& request, store::MeshRecord mesh,
@@ -60,8 +64,8 @@ class Meshes {
   blobs::BlobStore& blobs_;
   const UploadRooms& rooms_;
   results::Renderer& renderer_;
+  results::FilesOnRequest analyses_;
   std::mutex settling_;  // one upload at a time takes its name
-  FileCounts counts_;
 };
 
 }  // namespace unwrapd::server::uploads
