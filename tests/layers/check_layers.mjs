@@ -148,15 +148,17 @@ export function twins(headers) {
   return breaches;
 }
 
-/** Documents for readers of the tree as it is; decisions (docs/adr) tell of the tree as it was. */
-const GUIDE = /^([A-Z]+|docs\/[a-z]+)\.md$/;
+/** Documents. Decisions (docs/adr) name today's files, too, even where the figures beside them are older. */
+const GUIDE = /^([A-Z]+|docs\/[a-z]+|docs\/adr\/[\w-]+)\.md$/;
 const PATH_IN_TREE = /^(core|api|server|client|tests|docker|docs)(\/[\w.-]+)+$|^\w+\/[\w./-]+\.(cpp|hpp|mjs|js|cmake)$/;
+/** The end of a path ("solve/untangle", "frames.cpp"), where all of it belongs; not a type of media, or what is built. */
+const END_OF_PATH = /^(?!(application|build|image|model|text)\/)[a-z]\w*(\/[a-z_]+)+$|^\w+\.[ch]pp$/;
 
 /** Files and folders that a guide names or links to and that do not exist. exists: of a path. */
 export function deadPaths(path, text, exists) {
   if (!GUIDE.test(path) || path === "CHANGELOG.md") return [];
   const folder = dirname(path);
-  const named = [...text.matchAll(/`([^`\n]+)`/g)].map(([, name]) => name).filter((name) => PATH_IN_TREE.test(name));
+  const named = [...text.matchAll(/`([^`\n]+)`/g)].map(([, name]) => name).filter((name) => PATH_IN_TREE.test(name) || END_OF_PATH.test(name));
   const linked = [...text.matchAll(/\]\(([^)#:\s]+)(?:#[^)]*)?\)/g)].map(([, link]) => join(folder, link).split(sep).join("/"));
   const isThere = (name) => ["", ".cpp", ".hpp"].some((extension) => exists(name + extension));
   return [...named, ...linked].filter((name) => !isThere(name)).map((name) => `${path}: ${name} does not exist`);

@@ -153,7 +153,9 @@ test("guides name files that exist", () => {
   assert.equal(dead("CONTRIBUTING.md", "`core/gone.cpp`"), 1);
   assert.equal(dead("CONTRIBUTING.md", "`web/page.js`"), 1);
   assert.equal(dead("docs/api.md", "[here](SECURITY.md)"), 1);
-  assert.equal(dead("docs/adr/0001-a.md", "`core/gone.cpp`"), 0);
+  assert.equal(dead("docs/adr/0001-a.md", "`core/unwrap.cpp`, `core/unwrap`, `model/obj`, `GET`, `std::vector`"), 0);
+  for (const gone of ["core/gone.cpp", "core/gone", "atlas/gone", "solve/unwrap", "unwrap.cpp"])
+    assert.equal(dead("docs/adr/0001-a.md", `\`${gone}\``), 1, gone);
 });
 
 test("tests share no fixed temporary name", () => {
