@@ -54,7 +54,6 @@ CREATE UNLOGGED TABLE worked_on (
 
 /// To version 15: work of a job that several processes do together. Of PostgreSQL the tables are
 /// unlogged: what they lose is made again.
-inline constexpr std::int64_t kSharedWorkVersion = 15;
 inline constexpr const char* kSharedWorkStep = R"sql(
 CREATE TABLE shared_stages (
   job BIGINT NOT NULL,

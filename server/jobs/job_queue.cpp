@@ -173,8 +173,6 @@ bool JobQueue::enqueue(Submission& submission, const std::optional<Answer>& answ
   return true;
 }
 
-/// Waits for the job whose turn it is; nullptr when the queue is closed. A job whose row cannot be
-/// read never runs.
 Turn JobQueue::take_turn(bool may_help) {
   std::unique_lock lock(mutex_);
   while (!closed_) {

@@ -119,11 +119,11 @@ class JobQueue {
   /// idempotency_conflict, too_many_jobs, quota_exceeded, storage_full; invalid_link where its
   /// ticket was spent by a job that is gone.
   store::JobRecord submit(Submission submission);
-  /// Waits for the job whose turn it is; nullptr when the queue is closed.
-  std::shared_ptr<RunningJob> take() { return take_turn(false).job; }
-  /// The same, or where no job waits a running one that the worker may help with.
+  /// Waits for the job whose turn it is or, where none waits and the worker may help, for a running
+  /// one that it may help with. Empty when the queue is closed. A job whose row cannot be read
+  /// never runs.
   Turn take_turn(bool may_help);
-  /// Ends what take() returned. Its files are complete when it has succeeded. stored: called when
+  /// Ends a job of take_turn(). Its files are complete when it has succeeded. stored: called when
   /// the store has its end, and before anybody is told of it.
   void finish(const RunningJob& job, store::JobOutcome outcome,
               const std::function<void()>& stored = {});

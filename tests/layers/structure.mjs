@@ -1,13 +1,13 @@
 // The structure of the tree in figures, of any revision: node structure.mjs [--at REVISION] [...more]
 // Several revisions are columns of one table; HEAD without any. Sources of the programs alone count
-// (core, api, server, client, web), no tests. A room is a folder with sources.
+// (core, api, server, client), no tests. A room is a folder with sources.
 import { spawnSync } from "node:child_process";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 import { typesOf } from "./check_layers.mjs";
 
-const SOURCE = /^(core|api|server|client|web)\/.*\.(cpp|hpp)$/;
+const SOURCE = /^(core|api|server|client)\/.*\.(cpp|hpp)$/;
 const SHORT = 30;
 
 function git(flags, input = "") {

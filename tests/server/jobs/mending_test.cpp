@@ -9,6 +9,7 @@
 #include "server/base/errors.hpp"
 #include "server/database/sqlite_database.hpp"
 #include "server/jobs/job_queue.hpp"
+#include "tests/server/take_job.hpp"
 #include "tests/server/temp_dir.hpp"
 
 namespace unwrapd::server::jobs {
@@ -93,15 +94,15 @@ TEST_F(Mending, AJobThatWasStoredUnheardIsRun) {
   submit("j_2");
   EXPECT_TRUE(has_files("j_1"));
   queue_.mend();
-  EXPECT_EQ(queue_.take()->record.id, "j_1");
-  EXPECT_EQ(queue_.take()->record.id, "j_2");
+  EXPECT_EQ(take_job(queue_)->record.id, "j_1");
+  EXPECT_EQ(take_job(queue_)->record.id, "j_2");
 }
 
 TEST_F(Mending, AJobThatWasStoredWhenTheStoreGoesAwayKeepsItsFiles) {
   next_ = Fate::made_then_away;
   submit("j_1");
   EXPECT_TRUE(has_files("j_1"));
-  EXPECT_EQ(queue_.take()->record.id, "j_1");
+  EXPECT_EQ(take_job(queue_)->record.id, "j_1");
 }
 
 TEST_F(Mending, AJobThatWasNotStoredLeavesNoFiles) {
@@ -116,10 +117,10 @@ TEST_F(Mending, AJobThatWasNotStoredLeavesNoFiles) {
 TEST_F(Mending, AJobThatWasTakenUnheardIsTakenAgain) {
   submit("j_1");
   next_ = Fate::made_unheard;
-  EXPECT_THROW(queue_.take(), StoreAway);
+  EXPECT_THROW(take_job(queue_), StoreAway);
   EXPECT_EQ(store_.find("j_1")->state, JobState::running);
   queue_.mend();
-  const std::shared_ptr<RunningJob> job = queue_.take();
+  const std::shared_ptr<RunningJob> job = take_job(queue_);
   EXPECT_EQ(job->record.attempt, 2);
   EXPECT_EQ(job->record.crashes, 0) << "no server died";
 }
@@ -128,7 +129,7 @@ TEST_F(Mending, TheEndOfAJobWaitsForTheStoreAndComesOnce) {
   for (const Fate fate : {Fate::away, Fate::lost_in_doubt, Fate::made_unheard}) {
     const std::string id = "j_" + std::to_string(static_cast<int>(fate));
     submit(id);
-    const std::shared_ptr<RunningJob> job = queue_.take();
+    const std::shared_ptr<RunningJob> job = take_job(queue_);
     int stored = 0;
     next_ = fate;
     queue_.finish(*job, succeeded(), [&] { ++stored; });
@@ -150,9 +151,9 @@ TEST_F(Mending, ACancelThatWasStoredUnheardIsToldAndCounted) {
   queue_.mend();
   EXPECT_TRUE(feed->read(0).end);
   EXPECT_FALSE(has_files("j_1"));
-  EXPECT_EQ(queue_.take()->record.id, "j_2");
+  EXPECT_EQ(take_job(queue_)->record.id, "j_2");
   queue_.close();
-  EXPECT_EQ(queue_.take(), nullptr);
+  EXPECT_EQ(take_job(queue_), nullptr);
 }
 
 }  // namespace

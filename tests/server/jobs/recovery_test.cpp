@@ -6,6 +6,7 @@
 
 #include "server/base/clock.hpp"
 #include "server/jobs/job_queue.hpp"
+#include "tests/server/take_job.hpp"
 #include "tests/server/temp_dir.hpp"
 #include "tests/server/test_database.hpp"
 
@@ -49,10 +50,10 @@ TEST_F(Recovery, TheLongestWaitIsThatOfTheFirstJobThatWaits) {
     store_->insert(job);
   }
   EXPECT_GE(queue.waiting_seconds(), 90);
-  queue.take();
+  take_job(queue);
   EXPECT_GE(queue.waiting_seconds(), 30);
   EXPECT_LT(queue.waiting_seconds(), 90);
-  queue.take();
+  take_job(queue);
   EXPECT_EQ(queue.waiting_seconds(), 0);
 }
 
@@ -61,7 +62,7 @@ TEST_F(Recovery, AJobThatDoesNotStopIsLeftToTheNextStartAndSuspected) {
   std::filesystem::create_directories(blobs_.path("j_1", "uv.bin").parent_path());
   JobQueue queue(*store_, blobs_, events_, log_, {.stop = std::chrono::milliseconds(1)});
   queue.recover(false);
-  const std::shared_ptr<RunningJob> job = queue.take();
+  const std::shared_ptr<RunningJob> job = take_job(queue);
   EXPECT_FALSE(queue.drain(std::chrono::seconds(0)));
   EXPECT_TRUE(job->stop.stop_requested());
   EXPECT_EQ(store_->find("j_1")->state, JobState::queued);
@@ -74,7 +75,7 @@ TEST_F(Recovery, AJobThatDoesNotStopAndIsCancelledIsNotRunAgain) {
   store_->insert(some_job("j_1"));
   JobQueue queue(*store_, blobs_, events_, log_, {.stop = std::chrono::milliseconds(1)});
   queue.recover(false);
-  const std::shared_ptr<RunningJob> job = queue.take();
+  const std::shared_ptr<RunningJob> job = take_job(queue);
   EXPECT_TRUE(queue.cancel_or_remove("j_1"));
   EXPECT_FALSE(queue.drain(std::chrono::seconds(0)));
   EXPECT_EQ(store_->find("j_1")->state, JobState::cancelled);
@@ -84,7 +85,7 @@ TEST_F(Recovery, AJobThatStopsForTheEndAndIsCancelledMeanwhileIsNotRunAgain) {
   store_->insert(some_job("j_1"));
   JobQueue queue(*store_, blobs_, events_, log_, {});
   queue.recover(false);
-  const std::shared_ptr<RunningJob> job = queue.take();
+  const std::shared_ptr<RunningJob> job = take_job(queue);
   job->request_stop(StopCause::draining);
   EXPECT_TRUE(queue.cancel_or_remove("j_1"));
   queue.finish(*job, store::ended(JobState::cancelled, Error(ErrorCode::cancelled, ""), "j_1"));
@@ -98,7 +99,7 @@ TEST_F(Recovery, AWaitingJobThatWasToBeCancelledIsNotRunAgain) {
   JobQueue queue(*store_, blobs_, events_, log_, {});
   queue.recover(false);
   EXPECT_EQ(store_->find("j_1")->state, JobState::cancelled);
-  EXPECT_EQ(queue.take()->record.id, "j_2");
+  EXPECT_EQ(take_job(queue)->record.id, "j_2");
 }
 
 TEST_F(Recovery, AJobThatNeverStopsIsGivenUpWhereItCannotBeTriedApart) {
@@ -106,7 +107,7 @@ TEST_F(Recovery, AJobThatNeverStopsIsGivenUpWhereItCannotBeTriedApart) {
   for (int start = 1; start <= 3; ++start) {
     JobQueue queue(*store_, blobs_, events_, log_, {.stop = std::chrono::milliseconds(1)});
     queue.recover(false);
-    const std::shared_ptr<RunningJob> job = queue.take();
+    const std::shared_ptr<RunningJob> job = take_job(queue);
     ASSERT_NE(job, nullptr) << start;
     EXPECT_FALSE(queue.drain(std::chrono::seconds(0)));
   }
@@ -162,7 +163,7 @@ TEST_F(BoundedStore, GivesUpExpiredJobsThenThoseOfTheOwnerWithTheMost) {
   EXPECT_EQ(ids(), "j_7j_6j_5j_3j_1") << "j_4 and j_2 are given up, and nothing that waits";
   EXPECT_FALSE(std::filesystem::exists(dir_.path() / "blobs" / "j_2"));
   EXPECT_TRUE(std::filesystem::exists(dir_.path() / "blobs" / "j_1"));
-  const std::shared_ptr<RunningJob> job = queue.take();
+  const std::shared_ptr<RunningJob> job = take_job(queue);
   queue.finish(*job, succeeded(++ended_));
   queue.renew_leases();
   EXPECT_EQ(ids(), "j_7j_6j_3j_1") << "of the owner with three jobs";

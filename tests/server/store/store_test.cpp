@@ -10,6 +10,7 @@
 #include "server/base/files.hpp"
 #include "server/jobs/job_queue.hpp"
 #include "server/store/sweeper.hpp"
+#include "tests/server/take_job.hpp"
 #include "tests/server/temp_dir.hpp"
 #include "tests/server/test_database.hpp"
 
@@ -271,7 +272,7 @@ TEST_F(Store, TheEndOfAJobIsTellableBeforeItIsTold) {
   const Log log(LogLevel::off);
   jobs::JobQueue queue(*store_, blobs, events, log, {});
   queue.recover(false);
-  const std::shared_ptr<jobs::RunningJob> job = queue.take();
+  const std::shared_ptr<jobs::RunningJob> job = take_job(queue);
   int calls = 0;
   queue.finish(*job, succeeded(), [&] {
     ++calls;
