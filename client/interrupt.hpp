@@ -8,8 +8,8 @@
 
 namespace unwrapd::client {
 
-/// After its construction, SIGINT, SIGTERM and the end of the time limit request a stop instead of
-/// ending the process. Construct it before any other thread.
+/// After its construction, SIGINT, SIGTERM, SIGHUP and the end of the time limit request a stop
+/// instead of ending the process. Construct it before any other thread.
 class Interrupt {
  public:
   /// time_limit zero: no limit.

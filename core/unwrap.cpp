@@ -1,5 +1,6 @@
-// Unwrapping, step by step. unwrap_curve() is the list for all surfaces: prepare charts, map them,
-// pack, quantize, measure, assemble, report. pipeline::map_chart() is the list for one chart.
+// Unwrapping, step by step. unwrap_curve() is the list for all surfaces: repair, prepare charts,
+// map them, straighten, pack, quantize, measure, order, note faults, assemble, report.
+// pipeline::map_chart() is the list for one chart.
 #include "core/unwrap.hpp"
 
 #include <algorithm>

@@ -20,8 +20,9 @@ struct InputAnalysis {
   std::vector<Repair> repairs;  ///< of every surface in turn
 };
 
-/// The components of every surface; rules: of the first of them, whose paths are those of all.
-/// Throws Error: no_triangles, not_orientable, invalid_option, cancelled.
+/// The components of every surface. rules holds the seam paths of all surfaces; its `surface` is
+/// the number of surfaces.front(). Throws Error: no_triangles, not_orientable, invalid_option,
+/// cancelled.
 std::vector<charts::Charts> components(std::span<const Surface> surfaces, charts::SeamRules rules);
 
 /// What is known of surfaces by their components. Repairs that taking these apart into charts would

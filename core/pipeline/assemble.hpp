@@ -14,7 +14,7 @@ namespace unwrapd::pipeline {
 struct VertexPlan {
   std::vector<Triangle> faces;  ///< as UnwrappedSurface's
   std::vector<Index> source;    ///< as UnwrappedSurface's
-  std::vector<Index> shown;     ///< of each: which vertex of all charts, in their order; -1: none
+  std::vector<Index> shown;  ///< of each: which vertex of all charts, in their order, or kUncharted
 };
 
 std::size_t bytes_of(const VertexPlan& plan);

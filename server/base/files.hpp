@@ -19,7 +19,6 @@ namespace unwrapd::server {
 inline constexpr std::string_view kStorageFull =
     "The server's disk is full; try again later, or remove jobs that are no longer needed.";
 
-/// An open file descriptor.
 /// By which a file is known, and whether it has been written since.
 struct FileStamp {
   std::uint64_t device = 0;
@@ -30,6 +29,7 @@ struct FileStamp {
   auto operator<=>(const FileStamp&) const = default;
 };
 
+/// An open file descriptor.
 class File {
  public:
   explicit File(int descriptor) : descriptor_(descriptor) {}

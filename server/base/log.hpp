@@ -22,7 +22,7 @@ class Log {
   explicit Log(LogLevel least, LogFormat format = LogFormat::json);
 
   /// {"time": ..., "level": ..., "event": event, "trace": ..., ...fields}, or
-  /// time LEVEL event trace=... field=...; fields is an object or null.
+  /// time level event trace=... field=...; fields is an object or null.
   void write(LogLevel level, std::string_view event, const api::Json& fields = nullptr) const;
 
   void debug(std::string_view event, const api::Json& fields = nullptr) const {

@@ -74,7 +74,7 @@ constexpr std::array kFamilies = {
     FamilyRow{Metric::made_bytes, "unwrapd_cache_made_bytes_total", Type::Counter,
               "Bytes of files made because of cache misses, by cache."},
     FamilyRow{Metric::stored_bytes, "unwrapd_stored_bytes", Type::Gauge,
-              "Bytes of all jobs' files on disk."},
+              "Bytes of the files of jobs, meshes and uploads."},
     FamilyRow{Metric::free_bytes, "unwrapd_free_bytes", Type::Gauge,
               "Bytes that are free on the file system of the jobs' files."},
     FamilyRow{Metric::webhooks_due, "unwrapd_webhooks_due", Type::Gauge,

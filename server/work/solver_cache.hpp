@@ -28,8 +28,8 @@ struct MemoryLimits {
 
 class SolverCache final : public SharedCache {
  public:
-  /// What is larger alone than all that may be kept is handed out, not kept. workers: jobs that
-  /// share the machine's memory.
+  /// Values larger than the cache are returned but not cached. workers: jobs that share the
+  /// machine's memory.
   SolverCache(const MemoryLimits& limits, int workers);
 
   [[nodiscard]] Digest digest(std::span<const std::byte> bytes) const override;

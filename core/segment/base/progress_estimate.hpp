@@ -1,7 +1,7 @@
 #pragma once
-// How far a search is whose length nobody knows. Its work is counted in faces that were mapped to
-// try something, the one thing that takes time; each part of it has a share of the whole, and a
-// guess of what it takes.
+// Progress estimate for a search of unknown length. Work is counted in faces that were mapped to
+// try something, the one thing that takes time; each part of the search has a share of the whole,
+// and a guess of what it takes.
 
 #include <cstddef>
 #include <functional>
