@@ -30,19 +30,8 @@ constexpr double kDense = 0.95,
                  kLoose = 0.3;   // shares of pages that islands fill, at most and least
 constexpr double kStep = 1.003;  // factor between page sides that are tried
 
-/// Evenly spread pseudo-random numbers: 1, 2, 3, ... hashed.
-class Sequence {
- public:
-  std::size_t below(std::size_t bound) {
-    return static_cast<std::size_t>(splitmix64(state_ += kGoldenStep) % bound);
-  }
-
- private:
-  std::uint64_t state_ = 0;
-};
-
 /// A small change: exchanges two islands, moves one to the front, or rotates one.
-void change(Arrangement& arrangement, int turns, Sequence& sequence) {
+void change(Arrangement& arrangement, int turns, SplitMixSequence& sequence) {
   const std::size_t n = arrangement.order.size();
   const std::size_t kind = sequence.below(10), a = sequence.below(n), b = sequence.below(n);
   auto& order = arrangement.order;
@@ -65,7 +54,7 @@ void decide_turns(Arrangement& arrangement, const std::vector<CellPlace>& spots)
 
 class AnnealedStrip {
  public:
-  AnnealedStrip(BottomLeftPlacer& placer, Budget& budget, Sequence& sequence)
+  AnnealedStrip(BottomLeftPlacer& placer, Budget& budget, SplitMixSequence& sequence)
       : placer_(placer), budget_(budget), sequence_(sequence) {}
 
   CellPacking search(const Arrangement& start, const AnnealRules& rules) {
@@ -132,7 +121,7 @@ class AnnealedStrip {
 
   BottomLeftPlacer& placer_;
   Budget& budget_;
-  Sequence& sequence_;
+  SplitMixSequence& sequence_;
   int least_ = 1, width_ = 1;
   int top_ = 0;        ///< of the strip as it is; 0: empty
   double height_ = 0;  ///< its top, plus a small share of its islands' mean height
@@ -194,7 +183,7 @@ std::vector<CellPacking> smallest_page(BottomLeftPlacer& placer,
                                        const std::vector<Arrangement>& starts,
                                        const AnnealRules& rules, Budget& budget) {
   std::vector<CellPacking> all;
-  Sequence sequence;
+  SplitMixSequence sequence;
   for (std::size_t k = 0; k < starts.size(); ++k) {
     Budget own{budget.words / static_cast<std::int64_t>(starts.size() - k), budget.stop};
     budget.words -= own.words;

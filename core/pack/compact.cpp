@@ -76,18 +76,17 @@ class Page {
     std::iota(by_size.begin(), by_size.end(), 0);
     std::ranges::stable_sort(by_size, std::greater(),
                              [&](std::size_t k) { return placer_.box(k).size.prod(); });
-    const auto large = [&] { return by_size[std::min(below(count_), below(count_))]; };
+    const auto large = [&] {
+      return by_size[std::min(sequence_.below(count_), sequence_.below(count_))];
+    };
     CellPlace &a = spots[large()], &b = spots[large()];
     std::swap(a.x, b.x);
     std::swap(a.y, b.y);
-    if (below(2) == 0) a.turn = static_cast<int>(below(static_cast<std::size_t>(placer_.turns())));
+    if (sequence_.below(2) == 0)
+      a.turn = static_cast<int>(sequence_.below(static_cast<std::size_t>(placer_.turns())));
   }
 
  private:
-  std::size_t below(std::size_t bound) {
-    return static_cast<std::size_t>(splitmix64(state_ += kGoldenStep) % bound);
-  }
-
   const Mask& mask(std::size_t k) { return placer_.mask_of(k, spots_[k].turn); }
 
   [[nodiscard]] bool has_room(const Mask& mask) const {
@@ -132,7 +131,8 @@ class Page {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < count_; ++k)
       if (moves[k] != 0) order.push_back(k);
-    for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[below(k)]);
+    for (std::size_t k = order.size(); k > 1; --k)
+      std::swap(order[k - 1], order[sequence_.below(k)]);
     return order;
   }
 
@@ -176,7 +176,7 @@ class Page {
     const int span = rules_.reach > 0 ? 2 * rules_.reach : side_;
     const int stride = std::max(1, span / kColumnsAcross);
     Place own{{}, best.overlap};
-    const int offset = static_cast<int>(below(static_cast<std::size_t>(stride)));
+    const int offset = static_cast<int>(sequence_.below(static_cast<std::size_t>(stride)));
     for (int x = window.x_begin + offset; x <= window.x_end; x += stride)
       look(mask, turn, x, window.y_begin, window.y_end, own);
     if (own.overlap == best.overlap) return;
@@ -224,7 +224,7 @@ class Page {
     look_around(k, (turn + 1) % turns, best);
     look_around(k, (turn + turns - 1) % turns, best);
     for (int t = 0; rules_.reach == 0 && t < kOtherTurns; ++t)
-      look_around(k, static_cast<int>(below(static_cast<std::size_t>(turns))), best);
+      look_around(k, static_cast<int>(sequence_.below(static_cast<std::size_t>(turns))), best);
   }
 
   /// All cells that island k can come near to.
@@ -253,7 +253,7 @@ class Page {
   std::vector<CellPlace> spots_;
   std::vector<int> weight_, overlap_;  ///< of pairs of islands
   RowPrefixSums table_;                ///< of all islands but the one that moves
-  std::uint64_t state_ = 0;
+  SplitMixSequence sequence_;
 };
 
 /// Scales positions from a page of one side to a page of another.

@@ -37,17 +37,14 @@ std::size_t drawn_by_area(std::span<const MappedRegion> regions, std::uint64_t s
 /// A random region, and neighbours in random order as long as there is room for them.
 std::vector<char> drawn_regions(const SegmentationMesh& surface, const Partition& merged,
                                 std::span<const Index> owner, std::uint64_t seed) {
-  std::uint64_t state = seed * kSeedFactor;
-  const auto below = [&](std::size_t bound) {
-    return static_cast<std::size_t>(splitmix64(state += kGoldenStep) % bound);
-  };
+  SplitMixSequence sequence(seed * kSeedFactor);
   std::vector<char> loose(merged.regions.size(), 0);
-  const std::size_t centre = drawn_by_area(merged.regions, splitmix64(state += kGoldenStep));
+  const std::size_t centre = drawn_by_area(merged.regions, sequence.next());
   loose[centre] = 1;
   double area = merged.regions[centre].area;
   std::vector<Index> around = neighbours(surface, owner, static_cast<Index>(centre));
   while (!around.empty()) {
-    const std::size_t k = below(around.size());
+    const std::size_t k = sequence.below(around.size());
     const auto other = static_cast<std::size_t>(around[k]);
     around.erase(around.begin() + static_cast<std::ptrdiff_t>(k));
     if (area + merged.regions[other].area > kMostLoose) continue;
