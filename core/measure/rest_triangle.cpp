@@ -80,6 +80,12 @@ double face_area(const TriMesh& mesh,
   return 0.5 * first.cross(second).norm();
 }
 
+double area_of(std::span<const RestTriangle> rest) {
+  double area = 0;
+  for (const RestTriangle& one : rest) area += one.area;
+  return area;
+}
+
 double surface_area(const TriMesh& mesh, Executor& executor) {
   std::vector<double> sums(part_count(mesh.faces.size()), 0.0);
   for_each_part(mesh.faces.size(), executor,

@@ -28,6 +28,9 @@ std::vector<RestTriangle> flatten(std::span<const Vec3> positions, std::span<con
                                   Executor& executor);
 std::vector<RestTriangle> flatten(const TriMesh& mesh, const std::stop_token& stop = {});
 
+/// The sum of their areas.
+double area_of(std::span<const RestTriangle> rest);
+
 /// 3D area of one face, without the height floor.
 double face_area(const TriMesh& mesh, const Triangle& face);
 

@@ -131,8 +131,7 @@ class MapsInOrder {
       const auto rest = measure::flatten(mesh.positions, mesh.faces, executor_);
       const auto energies = solve::hybrid_energies({rest, mesh.faces, part.uv}, lambdas_,
                                                    options_.lambda_units, executor_);
-      double own = 0;
-      for (const measure::RestTriangle& triangle : rest) own += triangle.area;
+      const double own = measure::area_of(rest);
       for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += own * energies[k];
       area += own;
     }

@@ -50,8 +50,7 @@ MappedChart scale_part(const solve::Disk& disk, guarantee::GuaranteedPart part,
                        const solve::ChartConstraints& constraints, const solve::Solution& solution,
                        Executor& executor) {
   MappedChart mapped;
-  double area = 0;
-  for (const measure::RestTriangle& rest : disk.rest) area += rest.area;
+  const double area = measure::area_of(disk.rest);
   const double even = std::sqrt(area / measure::uv_area(disk.rest, disk.faces, part.uv, executor));
   if (!std::isfinite(even))
     throw Error(ErrorCode::solver_failed,
@@ -96,10 +95,7 @@ solve::ConstrainedStart constrained_start(const charts::Chart& chart, const solv
                                           const solve::ConstrainedStart& constrained) {
   const bool has_start = !chart.start.empty() && options.initial == InitialMap::automatic;
   if (!constrained.constraints.empty() || !has_start) return constrained;
-  solve::ConstrainedStart begin{{}, chart.start};
-  const double area = measure::uv_area(disk.rest, disk.faces, begin.start);
-  for (Vec2& u : begin.start) u /= std::sqrt(area);
-  return begin;
+  return {{}, solve::with_unit_area(disk, chart.start)};
 }
 
 solve::Solution parameterize_chart(solve::Solver& solver, const ChartJob& job,

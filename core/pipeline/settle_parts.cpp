@@ -30,10 +30,8 @@ double excess_of(const measure::DistortionSums& sums) {
 std::optional<MappedChart> solved(const MappedChart& part, const UnwrapOptions& options,
                                   double lambda, const std::stop_token& stop, Executor& executor) {
   const solve::Disk disk = solve::make_disk(part.chart->mesh, part.chart->loops, stop);
-  solve::ConstrainedStart begin{{}, part.uv};
-  const double area = measure::uv_area(disk.rest, disk.faces, begin.start, executor);
-  for (Vec2& u : begin.start) u /= std::sqrt(area);
-  solve::Solver solver(disk, options, std::move(begin), executor);
+  solve::Solver solver(disk, options, {{}, solve::with_unit_area(disk, part.uv, executor)},
+                       executor);
   solve::SolveWatch watch;
   watch.loop.stop = stop;
   solve::Solution solution = solver.run(lambda, watch);

@@ -20,10 +20,7 @@ constexpr double kLeastDeterminant = 0.01;  // of a face that counts; of the who
 UvMap moved_on(const solve::Disk& disk, Executor& executor, const UvMap& start) {
   UnwrapOptions options;
   options.stop.tolerance = kTolerance;
-  solve::ConstrainedStart begun{{}, start};
-  const double area = measure::uv_area(disk.rest, disk.faces, start, executor);
-  for (Vec2& u : begun.start) u /= std::sqrt(area);
-  solve::Solver solver(disk, options, std::move(begun), executor);
+  solve::Solver solver(disk, options, {{}, solve::with_unit_area(disk, start, executor)}, executor);
   solve::SolveWatch watch;
   watch.loop.stop = disk.stop;
   return solver.run(0, watch).uv;

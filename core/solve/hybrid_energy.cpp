@@ -16,8 +16,7 @@ measure::Jacobian scaled(const measure::Jacobian& j, double by) {
 
 std::vector<double> hybrid_energies(const MappedFaces& map, std::span<const double> lambdas,
                                     LambdaUnits units, Executor& executor) {
-  double area = 0;
-  for (const measure::RestTriangle& rest : map.rest) area += rest.area;
+  const double area = measure::area_of(map.rest);
   const double even = std::sqrt(area / measure::uv_area(map.rest, map.faces, map.uv, executor));
   std::vector<std::vector<double>> sums(part_count(map.rest.size()),
                                         std::vector<double>(lambdas.size()));

@@ -36,18 +36,6 @@ constexpr double kTrustedLambda = 0.02;
 constexpr double kOpenShare = 0.9;
 constexpr int kTrialIterations = 2;
 
-/// area: the area of uv.
-UvMap scaled_to_unit_area(UvMap uv, double area) {
-  if (area > 0)
-    for (Vec2& u : uv) u /= std::sqrt(area);
-  return uv;
-}
-
-UvMap scaled_to_unit_area(const Disk& disk, UvMap uv) {
-  const double area = measure::uv_area(disk.rest, disk.faces, uv);
-  return scaled_to_unit_area(std::move(uv), area);
-}
-
 arap::Rigidity rigidity_of(const Disk& disk, double lambda, LambdaUnits units) {
   if (units == LambdaUnits::dimensionless) return {lambda, false};
   return {lambda / (disk.unit * disk.unit), true};  // Eq. (5) in units of area 1
@@ -84,7 +72,8 @@ std::optional<UvMap> usable_frame_map(const Disk& disk, const arap::GlobalStep& 
     UvMap uv = arap::map_from_rotations(d, of_d);
     const double area = measure::uv_area(d.rest, d.faces, uv, of_d.executor());
     if (!(area > arap::kMinAreaShare)) return UvMap();
-    return scaled_to_unit_area(std::move(uv), area);
+    for (Vec2& u : uv) u /= std::sqrt(area);
+    return uv;
   };
   UvMap start = cached_of_disk<kMake>(disk, global);
   if (start.empty()) return std::nullopt;
@@ -98,8 +87,8 @@ void tell(const SolveWatch& watch, Stage stage) {
 }  // namespace
 
 UvMap initial_map(const Disk& disk, InitialMap kind, const arap::GlobalStep& global) {
-  if (kind == InitialMap::mean_value) return scaled_to_unit_area(disk, maps::mean_value_map(disk));
-  if (kind == InitialMap::tutte) return scaled_to_unit_area(disk, maps::tutte_map(disk));
+  if (kind == InitialMap::mean_value) return with_unit_area(disk, maps::mean_value_map(disk));
+  if (kind == InitialMap::tutte) return with_unit_area(disk, maps::tutte_map(disk));
   if (kind == InitialMap::automatic)
     if (std::optional<UvMap> frames = usable_frame_map(disk, global)) return std::move(*frames);
   return maps::conformal_map(disk, Pins::diameter);

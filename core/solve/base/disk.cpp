@@ -4,6 +4,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
+#include "core/measure/distortion.hpp"
 #include "core/solve/base/cached.hpp"
 
 namespace unwrapd::solve {
@@ -82,6 +83,18 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
   SerialExecutor serial;
   JobExecutor job(serial, stop);
   return make_disk(mesh, loops, job);
+}
+
+UvMap with_unit_area(const Disk& disk, UvMap uv, Executor& executor) {
+  const double area = measure::uv_area(disk.rest, disk.faces, uv, executor);
+  if (area > 0)
+    for (Vec2& u : uv) u /= std::sqrt(area);
+  return uv;
+}
+
+UvMap with_unit_area(const Disk& disk, UvMap uv) {
+  SerialExecutor serial;
+  return with_unit_area(disk, std::move(uv), serial);
 }
 
 }  // namespace unwrapd::solve

@@ -47,4 +47,9 @@ Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops, Executo
 Disk make_disk(const TriMesh& mesh, std::span<const BoundaryLoop> loops,
                const std::stop_token& stop = {});
 
+/// A map of the disk scaled so that measure::uv_area() is 1; one without area stays. Every executor
+/// gives the same bits.
+UvMap with_unit_area(const Disk& disk, UvMap uv, Executor& executor);
+UvMap with_unit_area(const Disk& disk, UvMap uv);
+
 }  // namespace unwrapd::solve

@@ -41,8 +41,7 @@ UvMap lay_out(const Disk& disk, std::vector<measure::RestTriangle> flat) {
 }
 
 void scale_to_area(const Disk& disk, UvMap& uv) {
-  double rest_area = 0;
-  for (const measure::RestTriangle& rest : disk.rest) rest_area += rest.area;
+  const double rest_area = measure::area_of(disk.rest);
   const double area = measure::uv_area(disk.rest, disk.faces, uv);
   if (!(area > 0) || !std::isfinite(area))
     throw Error(ErrorCode::solver_failed,

@@ -122,8 +122,7 @@ Patch whole(const Disk& disk) {
 
 /// Places a new map at the surface's size or, if there are soft constraints, by them.
 UvMap at_its_place(const Disk& disk, const MapIntent& intent, UvMap uv) {
-  const double area = measure::uv_area(disk.rest, disk.faces, uv);
-  for (Vec2& u : uv) u /= std::sqrt(area);
+  uv = with_unit_area(disk, std::move(uv));
   return intent.soft.empty() ? uv : constrained_start(std::move(uv), {{}, intent.soft});
 }
 
