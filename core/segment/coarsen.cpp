@@ -96,9 +96,7 @@ class Contraction {
   }
 
   [[nodiscard]] Vec3 face_normal(const Triangle& face) const {
-    const Vec3 ab = middle_[face[1]] - middle_[face[0]], ac = middle_[face[2]] - middle_[face[0]];
-    return {ab.y() * ac.z() - ab.z() * ac.y(), ab.z() * ac.x() - ab.x() * ac.z(),
-            ab.x() * ac.y() - ab.y() * ac.x()};
+    return normal_of(middle_[face[0]], middle_[face[1]], middle_[face[2]]);
   }
 
   /// Calls visit(h) for every half-edge that starts in v. True where v is on a boundary.
@@ -169,7 +167,7 @@ class Contraction {
       for_each_out(from, [&](Index g) {
         const Vec3 &p = middle_[end(g)], &q = middle_[start(previous_halfedge(g))];
         if (end(g) == other || start(previous_halfedge(g)) == other) return;
-        const Vec3 before = turned(middle_[from], p, q), after = turned(joint, p, q);
+        const Vec3 before = normal_of(middle_[from], p, q), after = normal_of(joint, p, q);
         keeps = keeps && before.dot(after) > 0;
       });
     };
@@ -178,7 +176,7 @@ class Contraction {
     return keeps;
   }
 
-  static Vec3 turned(const Vec3& a, const Vec3& b, const Vec3& c) {
+  static Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a, ac = c - a;
     return {ab.y() * ac.z() - ab.z() * ac.y(), ab.z() * ac.x() - ab.x() * ac.z(),
             ab.x() * ac.y() - ab.y() * ac.x()};

@@ -10,6 +10,7 @@
 #include "core/asset/gltf/elements.hpp"
 #include "core/asset/reader/steps.hpp"
 #include "core/base/cancel.hpp"
+#include "core/mesh/edges.hpp"
 
 namespace unwrapd::asset::reader {
 namespace {
@@ -38,10 +39,6 @@ std::vector<Index> read_corners(const Gltf& gltf, const Primitive& primitive) {
   return corners;
 }
 
-bool has_repeat(const Triangle& face) {
-  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
-}
-
 /// Strips and fans repeat a vertex to jump; such triangles are no faces. Lists keep all of theirs.
 std::vector<Triangle> triangles_of(Mode mode, const std::vector<Index>& corners) {
   std::vector<Triangle> faces;
@@ -57,7 +54,7 @@ std::vector<Triangle> triangles_of(Mode mode, const std::vector<Index>& corners)
     const Triangle strip{corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]};
     const Triangle fan{corners[i + 1], corners[i + 2], corners[0]};
     const Triangle& face = mode == Mode::triangle_strip ? strip : fan;
-    if (!has_repeat(face)) faces.push_back(face);
+    if (!repeats_vertex(face)) faces.push_back(face);
   }
   return faces;
 }
