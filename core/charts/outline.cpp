@@ -1,6 +1,7 @@
 #include "core/charts/outline.hpp"
 
 #include "core/measure/orientation.hpp"
+#include "core/mesh/cross.hpp"
 
 namespace unwrapd::charts {
 
@@ -20,6 +21,13 @@ Outline outline_of(const Chart& chart, std::span<const Vec2> uv) {
   return outline;
 }
 
+UvMap points_of(std::span<const std::array<Vec2, 2>> outline) {
+  UvMap points;
+  points.reserve(outline.size());
+  for (const auto& [a, b] : outline) points.push_back(a);
+  return points;
+}
+
 std::pair<Vec2, Vec2> bounds_of(const Outline& outline) {
   Vec2 low = Vec2::Constant(1e300), high = -low;
   for (const auto& [a, b] : outline) {
@@ -31,7 +39,7 @@ std::pair<Vec2, Vec2> bounds_of(const Outline& outline) {
 
 double area_of(const Outline& outline) {
   double twice = 0;
-  for (const auto& [a, b] : outline) twice += a.x() * b.y() - a.y() * b.x();
+  for (const auto& [a, b] : outline) twice += cross(a, b);
   return twice / 2;
 }
 

@@ -16,6 +16,9 @@ using Outline = std::vector<std::array<Vec2, 2>>;
 /// The chart's boundary loops, and the sides of flipped triangles, which may reach beyond them.
 Outline outline_of(const Chart& chart, std::span<const Vec2> uv);
 
+/// Where each segment starts: each corner of its loops once.
+UvMap points_of(std::span<const std::array<Vec2, 2>> outline);
+
 /// Its least and its greatest coordinates.
 std::pair<Vec2, Vec2> bounds_of(const Outline& outline);
 

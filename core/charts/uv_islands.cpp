@@ -8,6 +8,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/mesh/cross.hpp"
 #include "core/mesh/disjoint_sets.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/weld.hpp"
@@ -86,8 +87,7 @@ std::vector<Index> number_islands(const Places& places, Index& count) {
 }
 
 double signed_area(const Triangle& face, const UvMap& uv) {
-  const Vec2 a = uv[face[1]] - uv[face[0]], b = uv[face[2]] - uv[face[0]];
-  return a.x() * b.y() - a.y() * b.x();
+  return cross(uv[face[1]] - uv[face[0]], uv[face[2]] - uv[face[0]]);
 }
 
 using Side = std::array<Index, 2>;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/mesh/cross.hpp"
+
 namespace unwrapd::measure {
 namespace {
 
@@ -40,7 +42,7 @@ double area_of(const Polygon& polygon) {
   for (std::size_t i = 2; i < polygon.count; ++i) {
     const Vec2 a = polygon.corners[i - 1] - polygon.corners[0];
     const Vec2 b = polygon.corners[i] - polygon.corners[0];
-    twice += a.x() * b.y() - a.y() * b.x();
+    twice += cross(a, b);
   }
   return std::abs(twice) / 2;
 }

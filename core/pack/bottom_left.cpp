@@ -20,13 +20,6 @@ constexpr std::size_t kFewIslands = 64;  // up to which every row is searched
 constexpr double kSpanning = 0.5;        // the square of an island's length that may span a page,
                                          // beside the area of all boxes
 
-UvMap points_of(const charts::Outline& outline) {
-  UvMap points;
-  points.reserve(outline.size());
-  for (const auto& [a, b] : outline) points.push_back(a);
-  return points;
-}
-
 int allowed_turns(int turns, Rotation rotation) {
   if (rotation == Rotation::any) return turns;
   return rotation == Rotation::quarter ? 4 : 1;
@@ -50,7 +43,8 @@ BottomLeftPlacer::BottomLeftPlacer(std::span<const charts::Outline> outlines, in
   for (const Box& box : boxes_) area += box.size.prod();
   for (std::size_t k = 0; k < outlines.size(); ++k) {
     const double length = boxes_[k].size.maxCoeff();
-    if (length * length > kSpanning * area) boxes_[k] = squarest_box(points_of(outlines[k]));
+    if (length * length > kSpanning * area)
+      boxes_[k] = squarest_box(charts::points_of(outlines[k]));
   }
 }
 

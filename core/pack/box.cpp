@@ -9,6 +9,9 @@
 #include <functional>
 #include <numbers>
 
+#include "core/charts/outline.hpp"
+#include "core/mesh/cross.hpp"
+
 namespace unwrapd::pack {
 namespace {
 
@@ -17,8 +20,6 @@ constexpr double kSquareGain = 1 - 1e-6;  // least gain for which an island is r
 constexpr std::size_t kStraightTries = 16;
 constexpr double kMostlyStraight = 0.5;  // of the length of all sides
 constexpr double kStraight = 0.01;       // the product of sine and cosine, at most
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Appends one chain of the hull to `hull`. Entries before `base` stay.
 template <class Iterator>
@@ -110,11 +111,10 @@ Box squarest_box(std::span<const Vec2> points, double aspect) {
 
 std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides) {
   const auto way = [](const std::array<Vec2, 2>& side) { return Vec2(side[1] - side[0]); };
-  std::vector<Vec2> longest, points;
+  std::vector<Vec2> longest;
   double all = 0;
   for (const auto& side : sides) {
     longest.push_back(way(side));
-    points.push_back(side[0]);
     all += way(side).norm();
   }
   std::ranges::stable_sort(longest, std::greater(), &Vec2::squaredNorm);
@@ -134,16 +134,14 @@ std::optional<Box> straight_box(std::span<const std::array<Vec2, 2>> sides) {
     best = along;
   }
   if (best == Vec2::Zero()) return std::nullopt;
-  return box_along(points, best.normalized());
+  return box_along(charts::points_of(sides), best.normalized());
 }
 
 Box resting_box(std::span<const std::array<Vec2, 2>> sides, Rotation rotation) {
   const std::optional<Box> straight =
       rotation == Rotation::none ? std::nullopt : straight_box(sides);
   if (straight) return *straight;
-  UvMap points;
-  points.reserve(sides.size());
-  for (const auto& [a, b] : sides) points.push_back(a);
+  const UvMap points = charts::points_of(sides);
   return rotation == Rotation::none ? box_along(points, Vec2::UnitX()) : smallest_box(points);
 }
 

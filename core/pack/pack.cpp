@@ -142,9 +142,7 @@ class Packer {
   /// On a square page the placer's box says the same as the smallest one, and is known.
   [[nodiscard]] Vec2 least_box(std::size_t island) const {
     if (grid_.aspect == 1) return placer_.box(island).size;
-    UvMap points;
-    for (const auto& [a, b] : outlines_[island]) points.push_back(a);
-    return smallest_box(points).size;
+    return smallest_box(charts::points_of(outlines_[island])).size;
   }
 
   [[nodiscard]] std::int64_t work(double a_share) const {
@@ -204,9 +202,9 @@ class Packer {
 };
 
 std::vector<UvMap> points_of(std::span<const charts::Outline> islands) {
-  std::vector<UvMap> points(islands.size());
-  for (std::size_t k = 0; k < islands.size(); ++k)
-    for (const auto& [a, b] : islands[k]) points[k].push_back(a);
+  std::vector<UvMap> points;
+  points.reserve(islands.size());
+  for (const charts::Outline& island : islands) points.push_back(charts::points_of(island));
   return points;
 }
 

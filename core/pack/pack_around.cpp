@@ -20,6 +20,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/error.hpp"
+#include "core/mesh/cross.hpp"
 #include "core/pack/anneal_packing.hpp"
 #include "core/pack/box.hpp"
 #include "core/pack/page_grid.hpp"
@@ -46,12 +47,6 @@ constexpr std::size_t kAllOrders = std::numeric_limits<std::size_t>::max();
                   "th) is larger than a page; islands beside locked ones keep their sizes: make it "
                   "smaller, or lock none.",
               "/locked_islands");
-}
-
-UvMap points_of_sides(const charts::Outline& outline) {
-  UvMap points;
-  for (const auto& [a, b] : outline) points.push_back(a);
-  return points;
 }
 
 /// The runs of a row within [begin, end).
@@ -104,7 +99,7 @@ class LockedCells {
 
 /// Tested before any island is rasterized: its smallest box contains a square of its shorter side.
 bool is_beyond_page(const charts::Outline& outline, double aspect) {
-  const Vec2 size = smallest_box(points_of_sides(outline)).size;
+  const Vec2 size = smallest_box(charts::points_of(outline)).size;
   return size.minCoeff() > std::min(1.0, aspect) || size.maxCoeff() > std::hypot(1.0, aspect);
 }
 
@@ -118,10 +113,7 @@ double distance_to_side(const Vec2& p, const std::array<Vec2, 2>& side) {
 }
 
 bool do_cross(const std::array<Vec2, 2>& s, const std::array<Vec2, 2>& t) {
-  const auto turn = [](const Vec2& a, const Vec2& b, const Vec2& c) {
-    const Vec2 p = b - a, q = c - a;
-    return p.x() * q.y() - p.y() * q.x();
-  };
+  const auto turn = [](const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a, c - a); };
   return turn(s[0], s[1], t[0]) * turn(s[0], s[1], t[1]) < 0 &&
          turn(t[0], t[1], s[0]) * turn(t[0], t[1], s[1]) < 0;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/measure/orientation.hpp"
+#include "core/mesh/cross.hpp"
 #include "core/mesh/edges.hpp"
 #include "core/solve/maps/convex_map.hpp"
 
@@ -109,7 +110,7 @@ double area_of(const Border& border) {
   double twice = 0;
   for (std::size_t k = 0; k < border.at.size(); ++k) {
     const Vec2 &a = border.at[k], &b = border.at[border.next(k)];
-    twice += a.x() * b.y() - a.y() * b.x();
+    twice += cross(a, b);
   }
   return twice / 2;
 }

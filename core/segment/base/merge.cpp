@@ -16,6 +16,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/splitmix64.hpp"
+#include "core/mesh/cross.hpp"
 #include "core/pack/box.hpp"
 #include "core/segment/base/labels.hpp"
 #include "core/segment/base/region_pair.hpp"
@@ -31,8 +32,7 @@ constexpr double kLast = 1e99;      // the key of unions that failed before
 double area_within(const UvMap& hull) {
   double area = 0;
   for (std::size_t k = 2; k < hull.size(); ++k) {
-    const Vec2 a = hull[k - 1] - hull[0], b = hull[k] - hull[0];
-    area += (a.x() * b.y() - a.y() * b.x()) / 2;
+    area += cross(hull[k - 1] - hull[0], hull[k] - hull[0]) / 2;
   }
   return area;
 }

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/mesh/cross.hpp"
+
 namespace unwrapd::segment {
 namespace {
 
@@ -31,7 +33,7 @@ Motion motion_between(std::span<const std::array<Vec2, 2>> pairs) {
   for (const auto& [b, a] : pairs) {
     const Vec2 x = b - motion.from, y = a - motion.to;
     c += x.dot(y);
-    s += x.x() * y.y() - x.y() * y.x();
+    s += cross(x, y);
   }
   const double norm = std::hypot(c, s);
   if (norm > 0) motion.cosine = c / norm, motion.sine = s / norm;
@@ -52,8 +54,7 @@ int winding(std::span<const std::array<Vec2, 2>> sides, const Vec2& point) {
     const bool is_up = from.y() <= point.y() && to.y() > point.y();
     const bool is_down = to.y() <= point.y() && from.y() > point.y();
     if (!is_up && !is_down) continue;
-    const Vec2 side = to - from, way = point - from;
-    const double left = side.x() * way.y() - side.y() * way.x();
+    const double left = cross(to - from, point - from);
     if (is_up && left > 0) ++times;
     if (is_down && left < 0) --times;
   }

@@ -16,6 +16,7 @@
 #include "core/measure/distortion.hpp"
 #include "core/measure/orientation.hpp"
 #include "core/measure/overlaps.hpp"
+#include "core/mesh/cross.hpp"
 #include "core/solve/base/align_constrained.hpp"
 #include "core/solve/maps/convex_map.hpp"
 #include "core/solve/maps/fill_holes.hpp"
@@ -86,7 +87,7 @@ UvMap align_with(const UvMap& old, const UvMap& uv) {
   for (std::size_t v = 0; v < uv.size(); ++v) {
     const Vec2 a = uv[v] - from, b = old[v] - to;
     cosine += a.dot(b);
-    sine += a.x() * b.y() - a.y() * b.x();
+    sine += cross(a, b);
   }
   const double length = std::hypot(cosine, sine);
   if (length > 0) cosine /= length, sine /= length;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/shared_cache.hpp"
+#include "core/mesh/cross.hpp"
 
 namespace unwrapd::solve::repair {
 namespace {
@@ -22,8 +23,6 @@ constexpr double kLeastShift = 1e-10;  // added to the diagonal, of its mean
 constexpr double kMostShift = 1e2;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// The least t > 0 at which a + b t + c t^2 is zero, for a > 0; infinity when there is none.
 double first_root(double a, double b, double c) {

@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mesh/cross.hpp"
 #include "core/mesh/edges.hpp"
 
 namespace unwrapd::solve::repair {
 namespace {
-
-double cross_of(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// Of a side from its start to its end, as long as it is: to the right lies the outside.
 Vec2 outwards(const Vec2& along) { return {along.y(), -along.x()}; }
@@ -85,12 +84,12 @@ void OverlapArea::find_crossings(std::size_t side) {
       if ((c.cwiseMin(d).array() > high.array()).any() ||
           (c.cwiseMax(d).array() < low.array()).any())
         continue;
-      const double from_c = cross_of(along, c - a), from_d = cross_of(along, d - a);
+      const double from_c = cross(along, c - a), from_d = cross(along, d - a);
       if ((from_c > 0) == (from_d > 0)) continue;
       const Vec2 across = d - c;
-      const double turn = cross_of(along, across);
+      const double turn = cross(along, across);
       if (turn == 0) continue;
-      const double at = cross_of(c - a, across) / turn;
+      const double at = cross(c - a, across) / turn;
       if (at > 0 && at < 1) crossing_.push_back(at);
     }
   std::sort(crossing_.begin(), crossing_.end());
@@ -107,7 +106,7 @@ int OverlapArea::sheets_beyond(std::size_t side, double at) const {
     const Vec2 &c = corner_[side_[in_row_[k]].from], &d = corner_[side_[in_row_[k]].to];
     const bool is_above_c = c.y() <= p.y(), is_above_d = d.y() <= p.y();
     if (is_above_c == is_above_d) continue;
-    const double turn = cross_of(d - c, p - c);
+    const double turn = cross(d - c, p - c);
     if (is_above_c && turn > 0) ++sheets;   // upwards, p on its left
     if (!is_above_c && turn < 0) --sheets;  // downwards, p on its right
   }
