@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -27,8 +26,6 @@ namespace unwrapd::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Ours in shares of theirs, of all meshes.
 struct Shares {
@@ -84,9 +81,9 @@ void show(const fs::path& path, const UnwrapOptions& options, std::span<Shares> 
   const std::vector<Surface> surfaces = read_surfaces(path);
   SerialExecutor serial;
   std::ofstream("/proc/self/clear_refs") << '5';  // the peak of memory begins anew
-  const double begin = cpu_seconds();
+  const double begin = processor_seconds();
   const Unwrapped unwrapped = unwrap(surfaces, options, {}, serial);
-  const double seconds = cpu_seconds() - begin, megabytes = peak_megabytes();
+  const double seconds = processor_seconds() - begin, megabytes = peak_megabytes();
   std::vector<UnwrappedSurface> maps = unwrapped.surfaces;
   const charts::RepairedSurfaces repaired = pipeline::as_mapped(surfaces, options, maps);
   const std::vector<WrittenFace> faces = written_faces(repaired.surfaces, maps);

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <functional>
 
 #include "core/solve/solve.hpp"
@@ -29,7 +28,6 @@ namespace {
 constexpr int kRuns = 3;
 const UnwrapOptions kTenIterations{.stop = {.iterations = 10}};
 
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 double wall_seconds() {
   static const Stopwatch since_start;
   return since_start.seconds();

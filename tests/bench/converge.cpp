@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <deque>
 #include <filesystem>
 #include <string>
@@ -135,8 +134,6 @@ struct Cost {
   double seconds = 1e300;
   int sweeps = 0;
 };
-
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 Cost run_from(const solve::Disk& disk, InitialMap start, solve::Solution& solution) {
   const UnwrapOptions options{.initial = start};

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -23,8 +22,6 @@ namespace unwrapd::bench {
 namespace {
 
 constexpr double kShift = 1e-6;  // added to the diagonal of LSCM's matrix: definite without pins
-
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 class Table {
  public:

@@ -6,16 +6,13 @@
 #include "core/mesh/edges.hpp"
 #include "core/segment/search/close_slits.hpp"
 #include "core/segment/segment_charts.hpp"
+#include "tests/core/segment/segmentation_mesh_of.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
 using namespace shapes;
-
-SegmentationMesh segmentation_mesh_of(const TriMesh& mesh, std::span<const char> crease = {}) {
-  return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()), crease);
-}
 
 /// Half-edges whose length counts less.
 std::size_t creases_of(const SegmentationMesh& surface) {

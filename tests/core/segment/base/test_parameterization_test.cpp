@@ -9,14 +9,11 @@
 #include "core/linear/analysis.hpp"
 #include "core/segment/base/failed_trials.hpp"
 #include "tests/core/segment/cap_with_flap.hpp"
+#include "tests/core/segment/segmentation_mesh_of.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment {
 namespace {
-
-SegmentationMesh segmentation_mesh_of(const TriMesh& mesh) {
-  return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
-}
 
 Region all_of(const SegmentationMesh& surface) {
   Region region;

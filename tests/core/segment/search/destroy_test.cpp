@@ -6,14 +6,11 @@
 #include <set>
 
 #include "core/base/error.hpp"
+#include "tests/core/segment/segmentation_mesh_of.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment::search {
 namespace {
-
-SegmentationMesh segmentation_mesh_of(const TriMesh& mesh) {
-  return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
-}
 
 /// Regions of `size` faces each, as they follow each other; the seams inside are all marked `open`.
 Partition in_rows(const SegmentationMesh& surface, Index size, char open) {
