@@ -59,7 +59,7 @@ class Packer {
     if (page_.packing.max_pages > 1) return on_several();
     const bool are_few_large = count_large(outlines_) <= kFewOnAPage;
     if (are_few_large && placer_.size() <= kFewWithSmall) {
-      auto few = pack_few(outlines_, grid_, {page_.packing.rotation, page_.effort}, executor_);
+      auto few = pack_few(outlines_, grid_, page_.packing.rotation, page_.effort, executor_);
       if (few) return {std::move(*few), 1, padding_, {}};
     }
     std::vector<Placement> best = pack_many(placer_, grid_, page_.effort, executor_);

@@ -42,11 +42,11 @@ constexpr std::size_t kVeryFew = 3;  // islands that come to the same page from 
 /// Very few islands of a small mesh would take longer to pack than to map; where they may turn,
 /// most of that is masks. Where there are small ones besides the few, one start is nearly as good
 /// as another.
-Extent extent_of(std::size_t islands, const FewRules& rules) {
-  Extent extent = kExtents[static_cast<std::size_t>(rules.effort)];
-  if (islands > kFewOnAPage && rules.effort == Effort::balanced) extent.starts = kStartsWithSmall;
-  if (islands > kVeryFew || rules.effort == Effort::best) return extent;
-  extent.is_short = rules.rotation == Rotation::any;
+Extent extent_of(std::size_t islands, Rotation rotation, Effort effort) {
+  Extent extent = kExtents[static_cast<std::size_t>(effort)];
+  if (islands > kFewOnAPage && effort == Effort::balanced) extent.starts = kStartsWithSmall;
+  if (islands > kVeryFew || effort == Effort::best) return extent;
+  extent.is_short = rotation == Rotation::any;
   extent.starts = extent.is_short ? 1 : std::min(extent.starts, islands);
   return extent;
 }
@@ -74,12 +74,12 @@ struct Attempt {
 
 class FewPacker {
  public:
-  FewPacker(std::span<const charts::Outline> islands, const PageGrid& grid, const FewRules& rules,
-            Executor& executor)
+  FewPacker(std::span<const charts::Outline> islands, const PageGrid& grid, Rotation rotation,
+            Effort effort, Executor& executor)
       : islands_(islands),
         grid_(grid),
-        rotation_(rules.rotation),
-        extent_(extent_of(islands.size(), rules)),
+        rotation_(rotation),
+        extent_(extent_of(islands.size(), rotation, effort)),
         executor_(executor),
         shares_(shares_of(islands)) {}
 
@@ -186,9 +186,9 @@ double shares_of(std::span<const charts::Outline> islands) {
 }
 
 std::optional<std::vector<Placement>> pack_few(std::span<const charts::Outline> islands,
-                                               const PageGrid& grid, const FewRules& rules,
-                                               Executor& executor) {
-  return FewPacker(islands, grid, rules, executor).packed();
+                                               const PageGrid& grid, Rotation rotation,
+                                               Effort effort, Executor& executor) {
+  return FewPacker(islands, grid, rotation, effort, executor).packed();
 }
 
 }  // namespace unwrapd::pack

@@ -22,16 +22,11 @@ inline constexpr CompactRules kFirstCompaction{128, 0, 1, 14};
 /// The amount of work to spend, 12 at most: the number of islands, or less if they have few sides.
 double shares_of(std::span<const charts::Outline> islands);
 
-struct FewRules {
-  Rotation rotation = Rotation::any;
-  Effort effort = Effort::balanced;
-};
-
 /// Packs the islands as large as they fit; empty if no packing without overlaps was found. There
 /// are at least two, one of which has extent. The same for any number of threads. Throws
 /// Error{cancelled}.
 std::optional<std::vector<Placement>> pack_few(std::span<const charts::Outline> islands,
-                                               const PageGrid& grid, const FewRules& rules,
-                                               Executor& executor);
+                                               const PageGrid& grid, Rotation rotation,
+                                               Effort effort, Executor& executor);
 
 }  // namespace unwrapd::pack

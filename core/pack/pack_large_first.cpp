@@ -75,7 +75,7 @@ class LargeFirst {
 
   std::optional<std::vector<Placement>> packed() const {
     const PageGrid roomy{page_.padding / kSmallest / page_.resolution, page_.aspect()};
-    const auto full = pack_few(large_, roomy, {page_.packing.rotation, page_.effort}, executor_);
+    const auto full = pack_few(large_, roomy, page_.packing.rotation, page_.effort, executor_);
     if (!full) return std::nullopt;
     auto best = with_others(*full, kSmallest);
     double fits = kSmallest, fails = 1;
