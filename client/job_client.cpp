@@ -103,6 +103,22 @@ bool is_final_event(const SseEvent& event) {
 
 }  // namespace
 
+/// Lost connections in a row.
+struct JobClient::Losses {
+  int count = 0;
+  std::chrono::steady_clock::time_point first = {};
+};
+
+/// The state of following a job across connections.
+struct JobClient::FollowState {
+  std::string last_id;
+  std::optional<api::Job> job;  ///< set once it is final
+  milliseconds pause;
+  Losses losses = {};
+  int refused = 0;  ///< in a row
+  bool has_begun = false;
+};
+
 JobClient::JobClient(Servers servers, std::stop_token stop, Patience patience, Listener listener)
     : servers_(std::move(servers)),
       http_(servers_.next(), stop),

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <functional>
 #include <map>
-#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -65,21 +64,8 @@ class JobClient {
  private:
   using Call = std::function<Reply(const Http&)>;
 
-  /// Lost connections in a row.
-  struct Losses {
-    int count = 0;
-    std::chrono::steady_clock::time_point first = {};
-  };
-
-  /// The state of following a job across connections.
-  struct FollowState {
-    std::string last_id;
-    std::optional<api::Job> job;  ///< set once it is final
-    std::chrono::milliseconds pause;
-    Losses losses = {};
-    int refused = 0;  ///< in a row
-    bool has_begun = false;
-  };
+  struct Losses;
+  struct FollowState;
 
   /// Reads the events of one connection; without a stream, the job's state.
   void read_events(const std::string& job_id, FollowState& following, const EventSink& on_event);

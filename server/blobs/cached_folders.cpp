@@ -171,6 +171,11 @@ std::optional<StoredObject> CachedFolders::find_result(std::string_view job, std
   return found->second;
 }
 
+struct CachedFolders::Copy {
+  Time used;
+  std::string name;
+};
+
 std::vector<CachedFolders::Copy> CachedFolders::by_use() {
   std::vector<Copy> copies;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {

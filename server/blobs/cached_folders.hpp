@@ -67,10 +67,7 @@ class CachedFolders {
     StoredObjects results = {};  ///< once they are known
     Time used = {};
   };
-  struct Copy {
-    Time used;
-    std::string name;
-  };
+  struct Copy;
   [[nodiscard]] std::vector<Copy> by_use();
   [[nodiscard]] bool knows(std::string_view job, std::string_view file) const;
   BucketFolder find(std::string_view job);

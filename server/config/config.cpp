@@ -174,9 +174,7 @@ void Reading::check_environment() const {
   each_row([&](const ConfigGroup&, const ConfigRow& row) {
     known.push_back(variable_name(row.heading.name));
   });
-  const std::optional<UnknownVariable> unknown = unknown_variable(environ, known);
-  if (!unknown) return;
-  wrong("there is no variable " + unknown->name + "; did you mean " + unknown->nearest + "?");
+  if (const std::optional<std::string> mistake = unknown_variable(environ, known)) wrong(*mistake);
 }
 
 void Reading::read_flags(const CLI::App& app) {

@@ -28,8 +28,8 @@ std::string nearest_of(std::string_view name, const std::vector<std::string>& kn
 
 }  // namespace
 
-std::optional<UnknownVariable> unknown_variable(const char* const* environment,
-                                                const std::vector<std::string>& known) {
+std::optional<std::string> unknown_variable(const char* const* environment,
+                                            const std::vector<std::string>& known) {
   for (; *environment != nullptr; ++environment) {
     const std::string_view entry = *environment;
     const std::string_view name = entry.substr(0, entry.find('='));
@@ -37,7 +37,8 @@ std::optional<UnknownVariable> unknown_variable(const char* const* environment,
     if (!name.starts_with(kPrefix) || std::ranges::count(known, name) > 0 ||
         std::ranges::count(kOthers, name) > 0 || tells_of_a_service(name, value))
       continue;
-    return UnknownVariable{.name = std::string(name), .nearest = nearest_of(name, known)};
+    return "there is no variable " + std::string(name) + "; did you mean " +
+           nearest_of(name, known) + "?";
   }
   return std::nullopt;
 }
