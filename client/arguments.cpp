@@ -1,28 +1,16 @@
 #include "client/arguments.hpp"
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
 #include <string_view>
 #include <utility>
 
-#include "api/error_table.hpp"
-#include "api/options.hpp"
-#include "client/files.hpp"
-#include "client/formats.hpp"
+#include "client/complete_arguments.hpp"
 #include "client/in_flight.hpp"
 #include "client/nearest.hpp"
 #include "client/option_flags.hpp"
 
 namespace unwrapd::client {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr double kMaxTimeoutSeconds = 1e6;
-constexpr const char* kUsualServer = "http://127.0.0.1:8080";
 
 constexpr const char* kAbout =
     "unwrap computes UV coordinates for a triangle mesh: it sends FILE (glTF, GLB, OBJ, STL, "
@@ -52,17 +40,9 @@ Exit codes:
     4  a file cannot be read or written
   130  interrupted (Ctrl-C): the job is cancelled)";
 
-/// The raw values of the command line's flags.
-struct RawArguments {
-  Arguments arguments;
-  std::string server;
-  bool local = false;
-  double timeout_seconds = 0;
-};
-
 void add_picture_flags(CLI::App& app, Arguments& arguments) {
   app.add_option("--layout", arguments.layout,
-                 "Write a picture of the UV layout to PATH: a PNG if it ends in .png, else an SVG")
+                 "Write a picture of the UV layout to PATH: a .png or an .svg")
       ->type_name("PATH");
   app.add_option("--layout-colour", arguments.layout_colour,
                  "Quantity that the layout's colours show: worst stretch of lengths, distortion of "
@@ -71,14 +51,14 @@ void add_picture_flags(CLI::App& app, Arguments& arguments) {
       ->type_name("stretch|angle|area|flips");
   app.add_option("--template", arguments.painting,
                  "Write a template to paint on to PATH: the edges of the layout without a "
-                 "background, as a PNG with a pixel for each texel if it ends in .png, else an SVG")
+                 "background, as a .png with a pixel for each texel or an .svg")
       ->type_name("PATH");
   app.add_option("--preview-view", arguments.preview_view,
                  "From where the preview shows the mesh: front, back, left, right, top, bottom, "
                  "turntable (eight views), or two angles such as 30,20. Default: aslant")
       ->type_name("VIEW");
   app.add_option("--preview", arguments.preview,
-                 "Write a picture of the mesh, textured with a checkerboard, to PATH (PNG)")
+                 "Write a picture of the mesh, textured with a checkerboard, to PATH (.png)")
       ->type_name("PATH");
 }
 
@@ -95,7 +75,8 @@ void add_flags(CLI::App& app, RawArguments& raw) {
          "-o,--out", arguments.out,
          "File to write the result to. Its extension selects the format unless --output "
          "does; GLB, glTF and OBJ are written. Default: the name of FILE with \".uv\" before the "
-         "extension, which becomes .glb for .stl, .ply, .off and .zip; - (standard output) if FILE "
+         "extension, which becomes .glb unless it is .glb, .gltf or .obj; - (standard output) if "
+         "FILE "
          "is - or a pipe. With several meshes, --resume or --watch the folder for their results. A "
          "list of lambdas writes one file for each, with the lambda before the extension. compare "
          "writes a page (.html)")
@@ -138,123 +119,6 @@ void add_flags(CLI::App& app, RawArguments& raw) {
   app.set_version_flag("--version", "unwrap " UNWRAPD_VERSION);
 }
 
-/// Checks the options without a server's limits, which the server checks itself.
-void check_options(const OptionTexts& options) {
-  api::Limits limits;
-  limits.max_iterations = limits.max_constraints = std::numeric_limits<int>::max();
-  try {
-    api::parse_options(std::multimap<std::string, std::string>(options.begin(), options.end()),
-                       limits);
-  } catch (const Error& error) {
-    const api::OptionRow* row = api::option_at(error.where());
-    std::string message = row == nullptr ? "" : flag_name(row->name) + ": ";
-    message += error.what();
-    if (row != nullptr && row->type == api::OptionType::objects)
-      message += " (at " + error.where() + ")";
-    throw Failure(ExitCode::usage, message);
-  }
-}
-
-/// The entries of a list of lambdas, in its order, if the method makes a map for each.
-std::vector<std::string> lambdas_of(const OptionTexts& options) {
-  const auto method = options.find("method");
-  const auto lambda = options.find("lambda");
-  const bool is_list = lambda != options.end() && lambda->second.find(',') != std::string::npos;
-  if (!is_list || method == options.end() || method->second != "hybrid") return {};
-  return CLI::detail::split(lambda->second, ',');
-}
-
-bool is_batch(const Arguments& arguments) {
-  const fs::path& first = arguments.inputs.front();
-  std::error_code none;
-  const bool has_sign = first.string().find_first_of("*?[") != std::string::npos;
-  const bool is_pattern = has_sign && !is_address(first) && !fs::exists(first, none);
-  return arguments.inputs.size() > 1 || fs::is_directory(first, none) || is_pattern ||
-         arguments.resume || arguments.watch;
-}
-
-void check_batch(const Arguments& arguments) {
-  const std::array<std::pair<const char*, const fs::path&>, 4> of_one = {
-      {{"--report", arguments.report},
-       {"--layout", arguments.layout},
-       {"--template", arguments.painting},
-       {"--preview", arguments.preview}}};
-  for (const auto& [flag, path] : of_one)
-    if (!path.empty())
-      throw Failure(ExitCode::usage,
-                    std::string(flag) + " writes one file; leave it out, or name one FILE.");
-  std::error_code none;
-  const fs::path& out = arguments.out;
-  const bool is_file = is_stream(out) || is_mesh_name(out) || fs::exists(out, none);
-  if (!out.empty() && is_file && !fs::is_directory(out, none))
-    throw Failure(ExitCode::usage,
-                  "--out: several meshes, --resume and --watch write into a folder, and " +
-                      out.string() + " is none; name one.");
-  if (!arguments.lambdas.empty())
-    throw Failure(ExitCode::usage,
-                  "Of several meshes each has one result; name one --lambda, or one FILE.");
-}
-
-/// Whether the first of several words is a command, and no file.
-bool is_comparison(const Arguments& arguments) {
-  std::error_code none;
-  return arguments.inputs.size() > 1 && arguments.inputs.front() == "compare" &&
-         !fs::exists("compare", none);
-}
-
-/// Of `unwrap compare A B`.
-void settle_comparison(Arguments& arguments) {
-  arguments.compares = true;
-  arguments.inputs.erase(arguments.inputs.begin());
-  if (arguments.inputs.size() != 2)
-    throw Failure(ExitCode::usage, "compare takes two meshes; name both.");
-  if (!arguments.out.empty() && arguments.out.extension() != ".html")
-    throw Failure(ExitCode::usage, "--out: compare writes a page; name a file that ends in .html.");
-  if (!arguments.report.empty() || !arguments.layout.empty() || !arguments.painting.empty() ||
-      !arguments.preview.empty() || arguments.resume || arguments.watch ||
-      arguments.options.contains("measure_only"))
-    throw Failure(ExitCode::usage,
-                  "compare prints a table, or with --json both reports, and writes a page with -o; "
-                  "leave out --report, --layout, --template, --preview, --resume, --watch and "
-                  "--measure-only.");
-  arguments.options["measure_only"] = "true";
-}
-
-/// Checks what the parser cannot, and derives the remaining values.
-Arguments complete(RawArguments raw) {
-  Arguments& arguments = raw.arguments;
-  if (!arguments.sample.empty()) return std::move(arguments);
-  if (!(raw.timeout_seconds >= 0 && raw.timeout_seconds <= kMaxTimeoutSeconds))
-    throw Failure(ExitCode::usage, "--timeout: it must be a number of seconds, at most a million.");
-  if (arguments.inputs.empty()) throw Failure(ExitCode::usage, "FILE is missing; name a mesh.");
-  if (!raw.server.empty()) arguments.place = Place::server;
-  if (raw.local) arguments.place = Place::here;
-  arguments.servers = parse_server_urls(raw.server.empty() ? kUsualServer : raw.server);
-  // Only from the environment, since all users of the machine can see a command line.
-  const char* key = std::getenv("UNWRAP_API_KEY");
-  for (ServerUrl& server : arguments.servers) server.key = key == nullptr ? "" : key;
-  arguments.timeout = std::chrono::milliseconds(std::lround(1000 * raw.timeout_seconds));
-  if (is_comparison(arguments)) settle_comparison(arguments);
-  check_options(arguments.options);
-  if (arguments.compares) return std::move(arguments);
-  arguments.lambdas = lambdas_of(arguments.options);
-  if (is_batch(arguments)) {
-    check_batch(arguments);
-    return std::move(arguments);
-  }
-  arguments.file = std::exchange(arguments.inputs, {}).front();
-  const auto output = arguments.options.find("output");
-  const bool output_given = output != arguments.options.end();
-  const bool is_named = !arguments.out.empty() && !is_standard(arguments.out);
-  const std::string format = is_named                             ? format_of(arguments.out)
-                             : is_zip(local_name(arguments.file)) ? "glb"
-                                                                  : "auto";
-  if (arguments.out.empty())
-    arguments.out = default_out(arguments.file, output_given ? output->second : "auto");
-  if (!output_given && format != "auto") arguments.options["output"] = format;
-  return std::move(arguments);
-}
-
 /// "; did you mean --method?" after a flag that is not known and nearly one that is.
 std::string hint(const CLI::App& app) {
   std::vector<std::string> flags;
@@ -281,7 +145,7 @@ std::variant<Arguments, Message> parse_arguments(int argc, const char* const* ar
   add_option_flags(app, raw.arguments.options);
   try {
     app.parse(argc, argv);
-    return complete(std::move(raw));
+    return complete_arguments(std::move(raw));
   } catch (const CLI::CallForHelp&) {
     return Message{ExitCode::ok, app.help()};
   } catch (const CLI::CallForVersion& version) {

@@ -29,7 +29,7 @@ struct Arguments {
   bool resume = false;    ///< leave out inputs whose results are there
   bool watch = false;     ///< go on with inputs that come or change
   std::filesystem::path report;
-  std::filesystem::path layout;    ///< a PNG if its extension says so, else an SVG
+  std::filesystem::path layout;    ///< .png or .svg; an SVG without an extension
   std::string layout_colour;       ///< quantity to colour by; empty: the server's default
   std::filesystem::path painting;  ///< a template to paint on, a PNG or an SVG as the layout
   std::filesystem::path preview;   ///< the textured mesh, PNG

@@ -12,6 +12,7 @@
 
 #include "client/batch_files.hpp"
 #include "client/figures.hpp"
+#include "client/formats.hpp"
 #include "client/in_flight.hpp"
 #include "client/printable.hpp"
 
@@ -30,9 +31,9 @@ constexpr Patience kBatch{.lost_connections = 125, .refusals = 3600};
 /// What became of one mesh.
 struct Row {
   BatchFile item;
-  std::string report = {};   ///< JSON text; empty if it failed
-  Figures figures = {};      ///< of the report
-  std::string failure = {};  ///< empty if it did not fail
+  std::string report = {};                 ///< JSON text; empty if it failed
+  Figures figures = {};                    ///< of the report
+  std::string failure = {};                ///< empty if it did not fail
   double seconds = 0;
 };
 
@@ -62,11 +63,18 @@ class Batch {
   Clock::time_point told_wait_ = Clock::now() - kSilence;
 };
 
+std::string asked_format(const Arguments& arguments) {
+  const auto output = arguments.options.find("output");
+  return output == arguments.options.end() ? "auto" : output->second;
+}
+
 /// The arguments of one mesh.
 Arguments arguments_of(const Arguments& batch, const BatchFile& item) {
   Arguments one = batch;
   one.file = item.file;
   one.out = item.out;
+  const std::string usual = usual_output(item.file);
+  if (usual != "auto" && asked_format(batch) == "auto") one.options["output"] = usual;
   return one;
 }
 
@@ -192,8 +200,7 @@ void keep_new(std::vector<BatchFile>& items, std::map<fs::path, fs::file_time_ty
 
 void run_batch(const Arguments& arguments, const Servers& servers, const Console& console,
                const std::stop_token& stop) {
-  const auto output = arguments.options.find("output");
-  const std::string format = output == arguments.options.end() ? "auto" : output->second;
+  const std::string format = asked_format(arguments);
   std::map<fs::path, fs::file_time_type> tried;  // when what was sent had been written
   Batch batch(arguments, servers, console, stop);
   for (bool first = true; first || arguments.watch; first = false) {

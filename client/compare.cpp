@@ -39,7 +39,7 @@ Measured measured(const Arguments& arguments, std::size_t which, const Servers& 
     mesh.report = client.fetch(job, "/report");
     if (arguments.out.empty()) return mesh;
     mesh.layout = client.fetch(job, layout_of(arguments));
-    mesh.preview = client.fetch(job, "/preview.png");
+    mesh.preview = client.fetch(job, preview_of(arguments));
     return mesh;
   } catch (const Failure& failure) {
     throw Failure(failure.code(), mesh.name + ": " + failure.what());

@@ -5,6 +5,8 @@
 #include <map>
 #include <string_view>
 
+#include "client/formats.hpp"
+
 namespace unwrapd::client {
 namespace {
 
@@ -67,14 +69,13 @@ void check_standard_output(const Arguments& arguments, const std::vector<Output>
 }  // namespace
 
 std::string layout_of(const Arguments& arguments) {
-  std::string path = arguments.layout.extension() == ".png" ? "/layout.png" : "/layout.svg";
+  std::string path = is_png(arguments.layout) ? "/layout.png" : "/layout.svg";
   if (!arguments.layout_colour.empty()) path += "?colour=" + arguments.layout_colour;
   return path;
 }
 
 std::string template_of(const Arguments& arguments) {
-  const bool is_png = arguments.painting.extension() == ".png";
-  return std::string(is_png ? "/layout.png?size=page" : "/layout.svg?page=1") +
+  return std::string(is_png(arguments.painting) ? "/layout.png?size=page" : "/layout.svg?page=1") +
          "&wireframe=1&background=none";
 }
 

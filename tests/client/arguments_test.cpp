@@ -51,6 +51,15 @@ TEST(Arguments, AResultIsWrittenBesideTheFileWhenNoNameIsGiven) {
   EXPECT_EQ(accepted({"chair.zip"}).options.at("output"), "glb");
 }
 
+TEST(Arguments, AResultIsAGlbWhereTheInputsNameDoesNotTellItsFormat) {
+  for (const char* file : {"chair.txt", "chair"}) {
+    EXPECT_EQ(accepted({file}).out, "chair.uv.glb");
+    EXPECT_EQ(accepted({file}).options.at("output"), "glb");
+    EXPECT_EQ(accepted({file, "--output", "obj"}).out, "chair.uv.obj");
+    EXPECT_EQ(accepted({file, "-o", "b.obj"}).options.at("output"), "obj");
+  }
+}
+
 TEST(Arguments, CompareTakesTwoMeshesAndWritesAPage) {
   const Arguments arguments = accepted({"compare", "a.glb", "b.glb", "-o", "both.html"});
   EXPECT_TRUE(arguments.compares);
@@ -87,12 +96,35 @@ TEST(Arguments, PicturesHaveNamesAndTheLayoutAColour) {
 }
 
 TEST(Arguments, TemplatesAndViewsAreAskedForByTheirPaths) {
-  const Arguments arguments = accepted({"a.glb", "--template", "t.png", "--preview-view", "30,20"});
+  const Arguments arguments =
+      accepted({"a.glb", "--template", "t.PNG", "--preview", "p.png", "--preview-view", "30,20"});
   EXPECT_EQ(template_of(arguments), "/layout.png?size=page&wireframe=1&background=none");
   EXPECT_EQ(preview_of(arguments), "/preview.png?view=30,20");
   EXPECT_EQ(template_of(accepted({"a.glb", "--template", "t.svg"})),
             "/layout.svg?page=1&wireframe=1&background=none");
   EXPECT_EQ(preview_of(accepted({"a.glb"})), "/preview.png");
+}
+
+TEST(Arguments, APictureIsNotWrittenUnderTheNameOfAnotherFormat) {
+  for (const char* flag : {"--layout", "--template"})
+    EXPECT_THAT(refused({"a.glb", flag, "x.jpg"}).text,
+                HasSubstr(std::string(flag) + ": .jpg is not written; name a .png or .svg."));
+  EXPECT_THAT(refused({"a.glb", "--preview", "x.svg"}).text,
+              HasSubstr("--preview: .svg is not written; name a .png."));
+  EXPECT_THAT(refused({"--sample", "x.obj"}).text, HasSubstr("name a .glb."));
+  EXPECT_THAT(refused({"a.glb", "-o", "x.jpg"}).text, HasSubstr("name a .glb, .gltf or .obj."));
+  EXPECT_EQ(layout_of(accepted({"a.glb", "--layout", "-"})), "/layout.svg");
+  EXPECT_EQ(layout_of(accepted({"a.glb", "--layout", "x.PNG"})), "/layout.png");
+}
+
+TEST(Arguments, AColourOrAViewNeedsThePictureThatItChanges) {
+  EXPECT_THAT(refused({"a.glb", "--preview-view", "top"}).text, HasSubstr("picture of --preview;"));
+  EXPECT_THAT(refused({"a.glb", "--layout-colour", "area"}).text,
+              HasSubstr("picture of --layout;"));
+  EXPECT_EQ(refused({"compare", "a.glb", "b.glb", "--preview-view", "top"}).code, ExitCode::usage);
+  const Arguments page =
+      accepted({"compare", "a.glb", "b.glb", "-o", "both.html", "--preview-view", "top"});
+  EXPECT_EQ(preview_of(page), "/preview.png?view=top");
 }
 
 TEST(Arguments, AJobHasANameIfOneIsGiven) {
@@ -103,7 +135,10 @@ TEST(Arguments, AJobHasANameIfOneIsGiven) {
 TEST(Arguments, TheFormatFollowsTheResultsName) {
   EXPECT_EQ(accepted({"a.obj", "-o", "b.glb"}).options.at("output"), "glb");
   EXPECT_EQ(accepted({"a.obj", "-o", "b.bin"}).options.count("output"), 0);
-  EXPECT_EQ(accepted({"a.obj", "-o", "b.glb", "--output", "gltf"}).options.at("output"), "gltf");
+  EXPECT_EQ(accepted({"a.obj", "-o", "b.bin", "--output", "gltf"}).options.at("output"), "gltf");
+  EXPECT_EQ(accepted({"a.obj", "-o", "b.glb", "--output", "auto"}).options.at("output"), "glb");
+  EXPECT_THAT(refused({"a.obj", "-o", "b.glb", "--output", "gltf"}).text,
+              HasSubstr("b.glb names another format than --output gltf"));
 }
 
 TEST(Arguments, AResultIsNotWrittenUnderTheNameOfAnotherFormat) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "api/events.hpp"
+#include "client/files.hpp"
 #include "tests/client/expect_failure.hpp"
 #include "tests/client/fake_server.hpp"
 #include "tests/client/temporary_folder.hpp"
@@ -24,7 +25,8 @@ class Batches : public testing::Test {
  protected:
   void SetUp() override {
     server_.routes().Post("/v1/jobs",
-                          [](const httplib::Request& request, httplib::Response& reply) {
+                          [this](const httplib::Request& request, httplib::Response& reply) {
+                            output_ = request.get_param_value("output");
                             if (request.body.find("strange") == std::string::npos)
                               return answer(reply, 202, to_json(job_in(api::JobState::queued)));
                             reply.status = 413;
@@ -44,9 +46,9 @@ class Batches : public testing::Test {
   }
 
   /// What the command prints.
-  std::string run() {
+  std::string run(const char* input = "in") {
     Arguments arguments;
-    arguments.inputs = {folder_.file("in")};
+    arguments.inputs = {folder_.file(input)};
     arguments.out = folder_.file("out");
     arguments.jobs = 1;  // one after the other
     std::ostringstream out, err;
@@ -59,6 +61,7 @@ class Batches : public testing::Test {
     return out.str();
   }
 
+  std::string output_;  ///< format that the last request asks for
   FakeServer server_;
   const TemporaryFolder folder_;
   ExitCode code_ = ExitCode::ok;
@@ -77,6 +80,16 @@ TEST_F(Batches, AnotherServiceIsToldAtTheFirstMesh) {
   folder_.write("in/b.obj", "v");
   EXPECT_EQ(run(), "");
   EXPECT_EQ(code_, ExitCode::unreachable);
+}
+
+TEST_F(Batches, AResultIsAGlbWhereTheInputsNameDoesNotTellItsFormat) {
+  folder_.write("in/a.obj", "v");
+  run("in/a.obj");
+  EXPECT_EQ(output_, "");
+  folder_.write("in/a.txt", "v");
+  EXPECT_THAT(run("in/a.txt"), HasSubstr("1 done, 0 failed"));
+  EXPECT_EQ(output_, "glb");
+  EXPECT_EQ(read_file(folder_.file("out/a.glb")), "vt 0 0\n");
 }
 
 }  // namespace
