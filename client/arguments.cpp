@@ -19,7 +19,7 @@ constexpr const char* kAbout =
 
 constexpr const char* kFooter = R"(Examples:
   unwrap chair.glb                                 writes chair.uv.glb
-  unwrap chair.gltf -o chair.glb --method asap     sends the buffers beside chair.gltf with it
+  unwrap chair.gltf -o chair.glb --method asap     sends buffers and images beside it, too
   unwrap bust.obj -o bust.uv.obj --method hybrid --lambda 0.1 --layout bust.svg
   unwrap bust.glb --method hybrid --lambda 1,0.1   writes bust.uv.1.glb and bust.uv.0.1.glb
   unwrap chair.glb --json --quiet | jq .distortion

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "client/batch_files.hpp"
+#include "client/copy_beside.hpp"
 #include "client/figures.hpp"
 #include "client/formats.hpp"
 #include "client/in_flight.hpp"
@@ -34,6 +35,7 @@ struct Row {
   std::string report = {};                 ///< JSON text; empty if it failed
   Figures figures = {};                    ///< of the report
   std::string failure = {};                ///< empty if it did not fail
+  std::vector<std::string> warnings = {};  ///< on files that the result refers to
   double seconds = 0;
 };
 
@@ -99,6 +101,7 @@ Row Batch::unwrapped(const BatchFile& item, const InFlight::OnBegun& on_begun) {
                      {.on_begun = on_begun, .on_wait = [&](const auto& why) { tell_wait(why); }});
     row.report = unwrap_file(client, one, silent, stop_).front().report;
     row.figures = read_figures(row.report);
+    row.warnings = copy_beside(one);
     has_succeeded_ = true;
   } catch (const Failure& failure) {
     // Silence is of all meshes, and so is another service; a strange answer between others is not.
@@ -125,6 +128,7 @@ void Batch::tell(const Row& row) const {
     }
     console_.out << api::to_text(line) << std::endl;
   }
+  for (const std::string& warning : row.warnings) console_.err << printable(warning) << std::endl;
   if (console_.style != ProgressStyle::none)
     console_.err << "[" << ended_ << "/" << rows_.size() << "] "
                  << printable(row.item.file.string() +

@@ -8,6 +8,7 @@
 
 #include "client/failure.hpp"
 #include "client/files.hpp"
+#include "client/formats.hpp"
 
 namespace unwrapd::client {
 namespace {
@@ -34,46 +35,53 @@ bool leads_outside(const std::string& name) {
 }
 
 FileBeside locate(const std::string& uri, const fs::path& folder) {
-  const std::string name = percent_decoded(uri);
-  if (leads_outside(name))
+  const std::optional<fs::path> name = path_below(uri);
+  if (!name)
     throw Failure(ExitCode::file, "The buffer \"" + uri +
                                       "\" lies outside the document's folder; copy it beside the "
                                       "document and refer to it by its name alone.");
-  FileBeside buffer{uri, folder / name};
+  FileBeside buffer{uri, folder / *name};
   file_bytes(buffer.file);
   return buffer;
 }
 
-/// uri of a buffer; empty if it is missing or of another type.
-std::string uri_of(const nlohmann::json& buffer) {
-  if (!buffer.is_object()) return {};
-  const auto uri = buffer.find("uri");
-  return uri != buffer.end() && uri->is_string() ? uri->get<std::string>() : std::string();
+/// uri of a buffer or an image; empty if it is missing, of another type, or holds the data itself.
+std::string uri_of(const nlohmann::json& entry) {
+  if (!entry.is_object()) return {};
+  const auto found = entry.find("uri");
+  if (found == entry.end() || !found->is_string()) return {};
+  const auto& uri = found->get_ref<const std::string&>();
+  return uri.starts_with("data:") ? std::string() : uri;
 }
 
-/// Adds the file of this URI, once.
-void take(std::vector<FileBeside>& files, const std::string& uri, const fs::path& folder) {
-  if (std::ranges::find(files, uri, &FileBeside::uri) == files.end())
-    files.push_back(locate(uri, folder));
+/// The URIs of a document's buffers or images, each once.
+std::vector<std::string> uris_in(const nlohmann::json& document, const char* list) {
+  std::vector<std::string> uris;
+  if (!document.is_object() || !document.contains(list) || !document[list].is_array()) return uris;
+  for (const nlohmann::json& entry : document[list]) {
+    std::string uri = uri_of(entry);
+    if (!uri.empty() && std::ranges::find(uris, uri) == uris.end()) uris.push_back(std::move(uri));
+  }
+  return uris;
+}
+
+nlohmann::json read_json(const fs::path& document) {
+  return nlohmann::json::parse(read_file(document), nullptr, false);
 }
 
 std::vector<FileBeside> files_of_gltf(const fs::path& document, bool with_images) {
-  const auto json = nlohmann::json::parse(read_file(document), nullptr, false);
+  const nlohmann::json json = read_json(document);
   std::vector<FileBeside> files;
-  const auto take_all = [&](const char* list, bool must_exist) {
-    if (!json.is_object() || !json.contains(list) || !json[list].is_array()) return;
-    for (const nlohmann::json& entry : json[list]) {
-      const std::string uri = uri_of(entry);
-      if (uri.empty() || uri.starts_with("data:")) continue;
-      try {
-        take(files, uri, document.parent_path());
-      } catch (const Failure&) {
-        if (must_exist) throw;
-      }
-    }
-  };
-  take_all("buffers", true);
-  if (with_images) take_all("images", false);
+  for (const std::string& uri : uris_in(json, "buffers"))
+    files.push_back(locate(uri, document.parent_path()));
+  if (!with_images) return files;
+  for (const std::string& uri : uris_in(json, "images")) {
+    const std::optional<fs::path> name = path_below(uri);
+    std::error_code none;
+    const bool is_there = name && fs::is_regular_file(document.parent_path() / *name, none);
+    if (is_there && std::ranges::find(files, uri, &FileBeside::uri) == files.end())
+      files.push_back({uri, document.parent_path() / *name});
+  }
   return files;
 }
 
@@ -128,9 +136,22 @@ std::vector<FileBeside> files_of_obj(const fs::path& document) {
 
 }  // namespace
 
+std::optional<fs::path> path_below(const std::string& uri) {
+  std::string name = percent_decoded(uri);
+  if (leads_outside(name)) return std::nullopt;
+  return fs::path(std::move(name));
+}
+
+std::vector<std::string> image_uris(const fs::path& gltf) {
+  std::vector<std::string> uris = uris_in(read_json(gltf), "images");
+  std::erase_if(uris, [](const std::string& uri) { return uri.find("://") != std::string::npos; });
+  return uris;
+}
+
 std::vector<FileBeside> files_beside(const fs::path& document, WantedFiles wanted) {
-  if (document.extension() == ".gltf") return files_of_gltf(document, wanted.images);
-  if (document.extension() == ".obj" && wanted.materials) return files_of_obj(document);
+  const std::string extension = extension_of(document);
+  if (extension == "gltf") return files_of_gltf(document, wanted.images);
+  if (extension == "obj" && wanted.materials) return files_of_obj(document);
   return {};
 }
 

@@ -2,6 +2,7 @@
 // Finds the files beside a .gltf or an OBJ, so that they can be uploaded with it.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,16 @@ struct FileBeside {
   std::filesystem::path file;
 };
 
+/// The path that a URI names, below the folder of its document; none if it leads out of that.
+std::optional<std::filesystem::path> path_below(const std::string& uri);
+
+/// The images of a .gltf that are in files of their own, each once. A document that is not JSON has
+/// none.
+std::vector<std::string> image_uris(const std::filesystem::path& gltf);
+
 /// What of it the result needs, besides the buffers of a .gltf.
 struct WantedFiles {
-  bool images = false;     ///< of a .gltf
+  bool images = false;     ///< of a .gltf: a GLB contains them
   bool materials = false;  ///< of an OBJ: what mtllib names, and the images that these name
 };
 

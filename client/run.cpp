@@ -7,8 +7,10 @@
 
 #include "client/batch.hpp"
 #include "client/compare.hpp"
+#include "client/copy_beside.hpp"
 #include "client/figures.hpp"
 #include "client/files.hpp"
+#include "client/printable.hpp"
 #include "client/sample.hpp"
 #include "client/workplace.hpp"
 
@@ -64,6 +66,8 @@ void run(const Arguments& arguments, const Console& console, const std::stop_tok
   } else if (arguments.inputs.empty()) {
     JobClient client(workplace.servers(), stop);
     tell(arguments, unwrap_file(client, arguments, console, stop), console);
+    for (const std::string& sentence : copy_beside(arguments))
+      console.err << printable(sentence) << std::endl;
   } else {
     run_batch(arguments, workplace.servers(), console, stop);
   }

@@ -4,7 +4,6 @@
 
 #include "api/options.hpp"
 #include "client/files.hpp"
-#include "client/files_beside.hpp"
 #include "client/input_file.hpp"
 
 namespace unwrapd::client {
@@ -13,16 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Patience kShort{.lost_connections = 3, .refusals = 3};  // of a command that was stopped
-
-WantedFiles wanted_files(const Arguments& arguments) {
-  const auto given = [&](const char* name) {
-    const auto option = arguments.options.find(name);
-    return option == arguments.options.end() ? std::string() : option->second;
-  };
-  const std::string output = given("output");
-  return {.images = given("textures") == "transfer",
-          .materials = output == "glb" || output == "gltf"};
-}
 
 /// The name and short options go into the query; lists of objects, and files beside the mesh, need
 /// a multipart request.
@@ -89,6 +78,16 @@ void finish_job(JobClient& client, const std::string& job_id, const Console& con
 }
 
 }  // namespace
+
+WantedFiles wanted_files(const Arguments& arguments) {
+  const auto given = [&](const char* name) {
+    const auto option = arguments.options.find(name);
+    return option == arguments.options.end() ? std::string() : option->second;
+  };
+  const std::string output = given("output");
+  return {.images = given("textures") == "transfer" || output == "glb",
+          .materials = output == "glb" || output == "gltf"};
+}
 
 std::string finished_job(JobClient& client, const Arguments& arguments, const Console& console,
                          const std::stop_token& stop) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/arguments.hpp"
+#include "client/files_beside.hpp"
 #include "client/outputs.hpp"
 #include "client/progress.hpp"
 
@@ -19,6 +20,9 @@ struct Console {
   ProgressStyle style = ProgressStyle::lines;
   std::size_t width = 80;
 };
+
+/// What is sent with arguments.file, for the result to be complete.
+WantedFiles wanted_files(const Arguments& arguments);
 
 /// Sends arguments.file, or its address, and follows the job to its success, as unwrap_file();
 /// returns its id.

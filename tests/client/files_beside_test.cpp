@@ -1,5 +1,6 @@
 #include "client/files_beside.hpp"
 
+#include "client/unwrap_file.hpp"
 #include "tests/client/expect_failure.hpp"
 #include "tests/client/temporary_folder.hpp"
 
@@ -54,6 +55,18 @@ TEST(FilesBeside, ImagesAreAmongThemIfAskedForAndThere) {
   const auto files = files_beside(gltf, {.images = true});
   ASSERT_EQ(files.size(), 1);
   EXPECT_EQ(files[0].uri, "b.png");
+}
+
+TEST(FilesBeside, ImagesAreAskedForWhereTheResultContainsThem) {
+  const auto wants_images = [](const OptionTexts& options) {
+    Arguments arguments;
+    arguments.options = options;
+    return wanted_files(arguments).images;
+  };
+  EXPECT_TRUE(wants_images({{"output", "glb"}}));
+  EXPECT_TRUE(wants_images({{"textures", "transfer"}}));
+  EXPECT_FALSE(wants_images({{"output", "gltf"}}));
+  EXPECT_FALSE(wants_images({}));
 }
 
 TEST(FilesBeside, ThatAreMissingAreNamed) {

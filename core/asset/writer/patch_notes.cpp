@@ -120,7 +120,8 @@ std::vector<Note> side_effects_of_patch(const Gltf& gltf,
   const FilesBeside files = images_beside(gltf);
   add(gltf.came_as_text && output == Format::glb && files.count > 0, NoteCode::images_separate,
       counted(files.count, "image") + " of the asset" + named(files.first) +
-          " remain in separate files; keep them beside the GLB, or send them with the request.");
+          " remain in separate files; keep them beside the GLB, or send them with the request, as "
+          "unwrap does where they lie beside the .gltf.");
   return notes;
 }
 
