@@ -246,10 +246,13 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
                        "OBJ, so that images of its materials keep fitting. Send texcoord=0 to "
                        "replace them."});
     else if (obj->has_materials() && !obj->texcoord_lines.empty())
-      notes.push_back({NoteCode::textures_lost,
-                       "The OBJ had texture coordinates, which are replaced: images of its "
-                       "materials no longer fit. Send output=glb, with the files of its materials, "
-                       "to keep them in a set of their own."});
+      notes.push_back(
+          {NoteCode::textures_lost,
+           std::string("The OBJ had texture coordinates, which are replaced: images of "
+                       "its materials no longer fit. ") +
+               (output == Format::obj ? "Send output=glb, with the files of its materials, "
+                                      : "Send the files of its materials, and no texcoord, ") +
+               "to keep them in a set of their own."});
   }
   if (const mesh_files::MeshFile* file = std::get_if<mesh_files::MeshFile>(&document.source))
     more = mesh_files::note_on_mesh_file(*file, document.format);

@@ -10,7 +10,7 @@
 namespace unwrapd::asset::test {
 namespace {
 
-using testing::HasSubstr;
+using testing::HasSubstr, testing::Not;
 
 const std::string kSomePng = "\x89PNG\r\n\x1a\n and so on", kJpeg = "\xff\xd8\xff\xe0 and so on";
 
@@ -142,7 +142,10 @@ TEST(ObjMaterials, ASetThatIsNamedIsReplaced) {
   const Json json = json_of(write(asset, split_nowhere(asset), Format::glb));
   EXPECT_FALSE(json["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
   EXPECT_EQ(asset.texcoord(Format::glb), 0);
-  EXPECT_NE(note_with(notes_of(asset), NoteCode::textures_lost), nullptr);
+  const std::vector<Note> notes = notes_of(asset);
+  const Note* lost = note_with(notes, NoteCode::textures_lost);
+  ASSERT_NE(lost, nullptr);
+  EXPECT_THAT(lost->text, Not(HasSubstr("output=glb")));  // which it is
 }
 
 TEST(ObjMaterials, WithoutTheMtlNamesStayAndANoteTellsTheRest) {
@@ -183,6 +186,21 @@ TEST(ObjMaterials, WhatAGltfCannotHaveIsNamed) {
       "emissiveTexture"));
   EXPECT_THAT(note_with(notes_of(asset), NoteCode::data_dropped)->text,
               HasSubstr("other than PNG and JPEG"));
+}
+
+TEST(ObjMaterials, OtherPartsOfTheObjThatAGltfLacksAreNamed) {
+  const auto dropped = [](const std::string& text, Format output) {
+    const Asset asset = read_file(text);
+    const std::vector<Note> notes = side_effects(asset, split_nowhere(asset), output);
+    const Note* note = note_with(notes, NoteCode::data_dropped);
+    return note == nullptr ? std::string() : note->text;
+  };
+  const std::string all =
+      "o Part\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\ng A\nf 1 2 3\nl 1 3\np 2\n";
+  EXPECT_THAT(dropped(all, Format::glb),
+              HasSubstr("colours of vertices, lines, points, names of objects and groups. Send"));
+  EXPECT_EQ(dropped(all, Format::obj), "");
+  EXPECT_EQ(dropped("v 0 0 0 1\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", Format::glb), "");  // a weight
 }
 
 TEST(ObjMaterials, FilesAreFoundByTheirNamesInOtherFolders) {

@@ -185,17 +185,20 @@ TEST(Selection, LeavesTheRestAsItWas) {
 }
 
 TEST(Selection, NamesWhatTheAssetDoesNotHave) {
+  std::string message;
   const std::string file = two_materials().glb();
   const auto where = [&](const AssetOptions& options) {
     try {
       read_file(file, options);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::invalid_option);
+      message = error.what();
       return error.where();
     }
     return std::string("read");
   };
   EXPECT_EQ(where({.materials = {"glass", "wood"}}), "/materials/1");
+  EXPECT_NE(message.find("give glass"), std::string::npos) << message;
   EXPECT_EQ(where({.primitives = {"/meshes/0/primitives/2"}}), "/primitives/0");
 }
 

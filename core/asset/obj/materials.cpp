@@ -203,6 +203,20 @@ void take_images(const SentFiles& files, Obj& obj) {
   }
 }
 
+/// What of the OBJ's text, beside its materials, a glTF of it does not have.
+std::string dropped_parts(const Obj& obj) {
+  const auto is_line = [](const Element& element) { return element.keyword == 'l'; };
+  std::string text;
+  const auto add = [&](bool holds, const char* what) {
+    if (holds) text += (text.empty() ? "" : ", ") + std::string(what);
+  };
+  add(obj.has_colours, "colours of vertices");
+  add(std::ranges::any_of(obj.elements, is_line), "lines");
+  add(obj.has_points, "points");
+  add(obj.has_names, "names of objects and groups");
+  return text;
+}
+
 }  // namespace
 
 void read_materials(const Input& input, Obj& obj) {
@@ -262,6 +276,10 @@ std::vector<Note> note_on_materials(const Obj& obj) {
                      "The result lacks these parts of the OBJ's materials, which are not "
                      "converted: " +
                          dropped + "."});
+  if (const std::string dropped = dropped_parts(obj); !dropped.empty())
+    notes.push_back({NoteCode::data_dropped,
+                     "The result lacks these parts of the OBJ, which are not converted: " +
+                         dropped + ". Send output=obj to keep them."});
   const std::set<std::string> beside = images_beside(obj);
   if (!beside.empty())
     notes.push_back({NoteCode::images_separate,

@@ -23,7 +23,7 @@ bool keeps_texcoords(const Obj& obj, const AssetOptions& options);
 /// parts: of each primitive of the one mesh.
 void add_materials(const Obj& obj, std::span<const Index> parts, NewViews& views, Json& json);
 
-/// Notes on what became of materials and their images.
+/// Notes on what a glTF of the OBJ lacks, and on what became of materials and their images.
 std::vector<Note> note_on_materials(const Obj& obj);
 
 }  // namespace unwrapd::asset::obj

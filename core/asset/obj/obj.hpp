@@ -52,6 +52,9 @@ struct Obj {
   MtlLibrary looks;                    ///< materials of those that were sent
   std::map<std::string, std::string> images;  ///< sent ones that these use, by their paths
   std::vector<FileRepair> repairs;
+  bool has_colours = false;  ///< after the positions of vertices
+  bool has_names = false;    ///< of objects or groups
+  bool has_points = false;
   std::stop_token stop;  ///< of the job, for reading and writing
 
   /// Whether usemtl names one. Part 0 has none.

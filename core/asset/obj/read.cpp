@@ -75,6 +75,10 @@ class ObjReader {
     } else if (keyword == "vt") {
       ++texcoord_count_;
       obj_.texcoord_lines.emplace_back(at_.begin, at_.next);
+    } else if (keyword == "o" || keyword == "g") {
+      obj_.has_names = true;
+    } else if (keyword == "p") {
+      obj_.has_points = true;
     } else if (keyword == "mtllib") {
       obj_.libraries.emplace_back(words.rest());
     } else if (keyword == "usemtl") {
@@ -88,6 +92,8 @@ class ObjReader {
                                                std::to_string(limits_.max_vertices) +
                                                " vertices; simplify it or split it");
     surface_.mesh.positions.push_back(read_vec3(words));
+    words.next();  // alone it is a weight, and with two more a colour
+    obj_.has_colours = obj_.has_colours || !words.next().empty();
   }
 
   Vec3 read_vec3(Words& words) const {

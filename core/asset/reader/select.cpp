@@ -1,5 +1,6 @@
 // Selects the primitives to unwrap. The others do not change: they are in no surface, and data that
 // they share with a selected one is copied.
+#include <algorithm>
 #include <unordered_map>
 
 #include "core/asset/reader/steps.hpp"
@@ -40,6 +41,20 @@ PrimitivesByName by_pointer(const Gltf& gltf) {
   return names;
 }
 
+/// "A, B": what may be named, where that is short.
+std::string listed(const PrimitivesByName& names) {
+  constexpr std::size_t kMostNames = 12, kMostCharacters = 60;
+  std::vector<std::string> all;
+  for (const auto& [name, primitives] : names)
+    if (!name.empty() && name.size() <= kMostCharacters) all.push_back(name);
+  std::ranges::sort(all);
+  std::string text;
+  for (std::size_t k = 0; k < std::min(all.size(), kMostNames); ++k)
+    text += (k == 0 ? "" : ", ") + all[k];
+  if (text.empty()) return "names of materials of the asset";
+  return all.size() > kMostNames ? text + " or another" : text;
+}
+
 /// Marks the primitives of these names. A name is then removed from the map, so that repeating it
 /// marks nothing.
 void mark(std::string_view option, const std::vector<std::string>& wanted, PrimitivesByName names,
@@ -49,7 +64,7 @@ void mark(std::string_view option, const std::vector<std::string>& wanted, Primi
     if (found == names.end())
       refuse(option, k,
              option == "materials"
-                 ? "no primitive has a material of this name; give names of materials of the asset"
+                 ? "no primitive has a material of this name; give " + listed(names)
                  : "the asset has no such primitive; point to one, as in /meshes/0/primitives/1");
     for (const std::size_t i : found->second) marked[i] = 1;
     found->second.clear();
