@@ -131,6 +131,13 @@ std::string hint(const CLI::App& app) {
   return {};
 }
 
+/// The parser's words on an option that is given too often, said more simply.
+std::string mismatch(const std::string& text) {
+  const std::size_t end = text.find(": At Most 1 required");
+  if (end == std::string::npos) return text;
+  return text.substr(0, end) + " is given several times; give it once.";
+}
+
 Message refusal(ExitCode code, const std::string& why) {
   return {code, "unwrap: " + why + "\nSee unwrap --help.\n"};
 }
@@ -152,6 +159,8 @@ std::variant<Arguments, Message> parse_arguments(int argc, const char* const* ar
     return Message{ExitCode::ok, std::string(version.what()) + "\n"};
   } catch (const CLI::ExtrasError& error) {
     return refusal(ExitCode::usage, error.what() + hint(app));
+  } catch (const CLI::ArgumentMismatch& error) {
+    return refusal(ExitCode::usage, mismatch(error.what()));
   } catch (const CLI::ParseError& error) {
     return refusal(ExitCode::usage, error.what());
   } catch (const Failure& failure) {

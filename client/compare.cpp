@@ -16,6 +16,11 @@
 namespace unwrapd::client {
 namespace {
 
+/// In place of a problem that advises to leave out an option which compare sets itself.
+constexpr const char* kNothingToCompare =
+    "It has no texture coordinates to compare; unwrap it first, or name another set by --texcoord. "
+    "(code no_texture_coordinates)";
+
 struct Measured {
   std::string name;
   std::string report = {};
@@ -42,7 +47,9 @@ Measured measured(const Arguments& arguments, std::size_t which, const Servers& 
     mesh.preview = client.fetch(job, preview_of(arguments));
     return mesh;
   } catch (const Failure& failure) {
-    throw Failure(failure.code(), mesh.name + ": " + failure.what());
+    const std::string what = failure.what();
+    const bool has_none = what.find("no_texture_coordinates") != std::string::npos;
+    throw Failure(failure.code(), mesh.name + ": " + (has_none ? kNothingToCompare : what));
   }
 }
 

@@ -223,6 +223,8 @@ TEST(Arguments, AreCheckedBeforeAnythingIsSent) {
     EXPECT_EQ(message.code, ExitCode::usage) << message.text;
     EXPECT_THAT(message.text, HasSubstr("--help"));
   }
+  EXPECT_THAT(refused({"a.glb", "--preset", "chart", "--preset", "paper"}).text,
+              HasSubstr("--preset is given several times; give it once."));
   EXPECT_THAT(refused({"a.glb", "--lambda-units", "si"}).text, HasSubstr("--lambda-units"));
 }
 
