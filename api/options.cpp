@@ -26,6 +26,8 @@ constexpr std::size_t kMaxMisspelling = 2;  // edits between a name and the sugg
 std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
 
 [[noreturn]] void refuse_unknown(std::string_view name) {
+  if (name.starts_with("webhook"))
+    refuse(name, "A webhook is no option: send its address in the header Unwrapd-Webhook.");
   const std::string_view asked = name.substr(0, kMaxEchoed);
   const auto distance = [&](const OptionRow& row) {
     return std::min(edit_distance(asked, row.name), edit_distance(asked, last_part(row.name)));

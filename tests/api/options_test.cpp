@@ -281,10 +281,10 @@ TEST(Options, GuessWhatAMisspeltNameMeant) {
 }
 
 TEST(Options, ListAllNamesForOneThatIsLikeNone) {
-  for (const char* name : {"", "x", "texture_size"}) {
+  for (const char* name : {"", "x", "texture_size"})
     EXPECT_THAT(refusal(Query{{name, "1"}}).what(),
                 HasSubstr("the options are preset, method, lambda,"));
-  }
+  EXPECT_THAT(refusal(Query{{"webhook", "1"}}).what(), HasSubstr("header Unwrapd-Webhook."));
   EXPECT_EQ(refusal(Query{{"a/b~c", "1"}}).where(), "/a~1b~0c");
   EXPECT_EQ(refusal(Query{{std::string(100'000, 'a'), "1"}}).code(), ErrorCode::invalid_option);
 }
