@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "core/types/chart_rules.hpp"
+
 namespace unwrapd::pipeline {
 namespace {
 
@@ -44,8 +46,22 @@ std::string described(const Layout& layout, std::span<const Surface> surfaces, s
          short_text(report.distortion.area);
 }
 
+/// Advice for options under which charts are not split. Both may have to change.
+std::string advice_to_split(const UnwrapOptions& options) {
+  constexpr const char* kSplit = "send max_distortion=2.02 to split such charts.";
+  if (options.keeps_uvs())
+    return std::string(" Leave out ") + (options.measure_only ? "measure_only" : "repack_only") +
+           ", which keeps the charts as they are, and " + kSplit;
+  if (keeps_whole(options))
+    return std::string(" Leave out ") + (options.constraints.empty() ? "boundary" : "constraints") +
+           ", which keeps such charts whole, and " + kSplit;
+  if (options.max_charts)
+    return " Send max_distortion=2.02 and max_charts=none to split such charts.";
+  return " Send max_distortion=2.02 to split such charts.";
+}
+
 std::string advice_on_distortion(const UnwrapOptions& options) {
-  if (!options.max_distortion) return " Send max_distortion=2.02 to split such charts.";
+  if (!options.max_distortion) return advice_to_split(options);
   if (options.method != Method::arap)
     return " The bound holds for maps of method=arap; other methods trade areas for angles.";
   if (!options.keep_edges.empty())

@@ -1,7 +1,9 @@
 #include "core/pipeline/place_islands.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <map>
 #include <string>
 #include <utility>
@@ -13,13 +15,21 @@
 namespace unwrapd::pipeline {
 namespace {
 
+/// A number of texels with so many digits that a reader needs.
+std::string texels_text(double texels) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", texels);
+  return text.data();
+}
+
 void note_padding(const pack::PackResult& packed, int asked, Report& report) {
   if (packed.padding >= asked) return;
   report.notes.push_back(
       {NoteCode::padding_reduced,
-       "Padding for so many islands would fill most of the page. The padding is " +
-           std::to_string(packed.padding) + " texels instead of " + std::to_string(asked) +
-           "; ask for a larger page to have the full padding."});
+       "A padding of " + std::to_string(asked) +
+           " texels around every island would take more than half of the page. The padding is " +
+           texels_text(packed.padding) +
+           " texels instead; ask for a larger page to have the full padding."});
 }
 
 void note_stacks(const pack::PackResult& packed, Report& report) {

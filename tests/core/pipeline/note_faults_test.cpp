@@ -34,6 +34,32 @@ TEST(NoteFaults, TellTheWorstChartAndItsPlace) {
   EXPECT_NE(notes[0]->text.find("max_distortion=2.02"), std::string::npos);
 }
 
+TEST(NoteFaults, AdviseWhatTheOtherOptionsAllow) {
+  const auto advice = [](const UnwrapOptions& options) {
+    const Unwrapped ring = unwrapped_surface(cylinder(), options);
+    const auto notes = notes_of(ring, NoteCode::distorted);
+    return notes.empty() ? std::string() : notes.front()->text;
+  };
+  const std::string of_boundary = advice({.boundary = BoundaryShape::square});
+  EXPECT_NE(of_boundary.find("Leave out boundary, which keeps"), std::string::npos) << of_boundary;
+  const std::string of_count = advice({.max_charts = 1});
+  EXPECT_NE(of_count.find("Send max_distortion=2.02 and max_charts=none"), std::string::npos)
+      << of_count;
+}
+
+TEST(NoteFaults, TellAPaddingThatIsReduced) {
+  std::vector<TriMesh> plates;
+  for (int k = 0; k < 5; ++k)
+    plates.push_back(shapes::moved(shapes::grid(4, 4), Vec3(10 * k, 0, 0)));
+  UnwrapOptions options;
+  options.padding = options.resolution / 4;
+  const Unwrapped few = unwrapped_surface(shapes::surface_of(shapes::merged(plates)), options);
+  const auto notes = notes_of(few, NoteCode::padding_reduced);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0]->text.find("A padding of 256 texels"), std::string::npos) << notes[0]->text;
+  EXPECT_EQ(notes[0]->text.find(".000"), std::string::npos) << notes[0]->text;
+}
+
 TEST(NoteFaults, TellSeamsAtUvsThatThereAreNot) {
   Surface surface = shapes::surface_of(shapes::grid(2, 2));
   const auto told = [&](SeamMode seams) {

@@ -10,7 +10,7 @@ const REPAIRS: Record<string, (n: number) => string> = {
   duplicate_faces_set_aside: (n) => `${count(n, 'triangle')} repeated another and ${n === 1 ? 'shares' : 'share'} its place.`,
   non_manifold_edges_split: (n) => `The surface was split at ${count(n, 'edge')} with three or more faces.`,
   cut_to_disk: (n) => `${count(n, 'piece')} had to be cut open to become flat.`,
-  segmented: (n) => `${count(n, 'piece')} ${were(n)} split into charts of less distortion.`,
+  segmented: (n) => `${count(n, 'piece')} ${were(n)} cut open, or split into charts of less distortion.`,
   vertices_welded_near: (n) => `${count(n, 'vertex', 'vertices')} that rounding had moved apart ${were(n)} welded.`,
   faces_turned: (n) => `${count(n, 'triangle')} ${were(n)} wound against the others and turned for the map. The file stays as it is.`,
   line_ends_replaced: (n) => `${count(n, 'line')} ended in CR alone; the result has LF.`,
