@@ -25,12 +25,14 @@ struct LayoutLook {
       : colouring(shown), page(extent) {}
 
   Colouring colouring;
-  Vec2 page;                ///< its sides, the longer one 1; UVs are in these units
-  bool legend = true;       ///< below the page
-  bool background = true;   ///< false: transparent wherever nothing is drawn
-  bool wireframe = false;   ///< the edges of all triangles, in place of their colours
-  bool numbers = false;     ///< of islands (island_numbers.hpp)
-  bool is_cropped = false;  ///< to the page: what lies beyond it is cut off, as are margins
+  Vec2 page;                 ///< its sides, the longer one 1; UVs are in these units
+  bool legend = true;        ///< below the page
+  bool background = true;    ///< false: transparent wherever nothing is drawn
+  bool wireframe = false;    ///< the edges of all triangles, in place of their colours
+  bool numbers = false;      ///< of islands (island_numbers.hpp)
+  bool is_cropped = false;   ///< to the page: what lies beyond it is cut off, as are margins
+  int page_count = 1;        ///< UDIM tiles with islands, each with a border if there are several
+  Vec2 tile = Vec2::Ones();  ///< sides of each of them
 };
 
 /// A figure that stands below the bar.

@@ -106,9 +106,10 @@ void append_hatching(Drawing& drawing, std::span<const Polygon> overlaps, const 
   }
 }
 
-void append_outline(Drawing& drawing, const UnwrappedSurface& surface, const Scale& scale) {
-  for (const Edge& edge : outline(surface))
-    append_line(drawing, {scale.pixel(surface.uv[edge[0]]), scale.pixel(surface.uv[edge[1]])},
+void append_edges(Drawing& drawing, std::span<const Edge> edges, const UvMap& uv,
+                  const Scale& scale) {
+  for (const Edge& edge : edges)
+    append_line(drawing, {scale.pixel(uv[edge[0]]), scale.pixel(uv[edge[1]])},
                 scale.line(kOutlineWidth), kInk);
 }
 
@@ -182,7 +183,8 @@ Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedS
                    const LayoutLook& look, int size, const std::stop_token& stop) {
   assert(size >= 1 && size <= kMaxImageSize);
   const Extent extent = extent_of(look, size);
-  const Scale scale{.frame = look.is_cropped ? Frame() : frame_of(unwrapped),
+  const PageBorders pages = page_borders(look);
+  const Scale scale{.frame = look.is_cropped ? Frame() : frame_of(unwrapped, pages),
                     .size = static_cast<double>(size),
                     .above = look.is_cropped ? size * (1 - look.page.y()) : 0};
   Drawing drawing;
@@ -194,7 +196,9 @@ Image layout_image(std::span<const Surface> surfaces, std::span<const UnwrappedS
     append_colours(drawing, surfaces, unwrapped, look, scale, stop);
   }
   throw_if_cancelled(stop);
-  for (const UnwrappedSurface& surface : unwrapped) append_outline(drawing, surface, scale);
+  for (const UnwrappedSurface& surface : unwrapped)
+    append_edges(drawing, outline(surface), surface.uv, scale);
+  append_edges(drawing, pages.edges, pages.uv, scale);
   if (look.numbers) append_numbers(drawing, unwrapped, look, scale);
   if (look.legend) append_legend(drawing, colour_scale(look.colouring), extent);
   const std::optional<Rgb> background = look.background ? std::optional(kPage) : std::nullopt;

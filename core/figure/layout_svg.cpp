@@ -272,9 +272,11 @@ Paths paths_of(std::span<const Surface> surfaces, std::span<const UnwrappedSurfa
 std::string layout_svg(std::span<const Surface> surfaces,
                        std::span<const UnwrappedSurface> unwrapped, const LayoutLook& look,
                        const std::stop_token& stop) {
-  const Frame frame = look.is_cropped ? Frame() : frame_of(unwrapped);
+  const PageBorders pages = page_borders(look);
+  const Frame frame = look.is_cropped ? Frame() : frame_of(unwrapped, pages);
   const Shown shown = shown_of(look);
-  const Paths paths = paths_of(surfaces, unwrapped, look, frame, stop);
+  Paths paths = paths_of(surfaces, unwrapped, look, frame, stop);
+  for (const Edge& edge : pages.edges) append_edge(paths.boundary, edge, {pages.uv, frame});
   std::string svg;
   append_head(svg, look, shown);
   if (look.background)

@@ -151,17 +151,35 @@ std::vector<Edge> outline(const UnwrappedSurface& surface) { return edges_of(sur
 
 std::vector<Edge> inner_edges(const UnwrappedSurface& surface) { return edges_of(surface, false); }
 
-Frame frame_of(std::span<const UnwrappedSurface> unwrapped) {
+Frame frame_of(std::span<const UnwrappedSurface> unwrapped, const PageBorders& pages) {
   Vec2 low = Vec2::Zero(), high = Vec2::Ones();
-  for (const UnwrappedSurface& surface : unwrapped) {
-    for (const Vec2& uv : surface.uv) {
+  const auto include = [&](const UvMap& places) {
+    for (const Vec2& uv : places) {
       low = low.cwiseMin(uv);
       high = high.cwiseMax(uv);
     }
-  }
+  };
+  for (const UnwrappedSurface& surface : unwrapped) include(surface.uv);
+  include(pages.uv);
   const double side = (high - low).maxCoeff();
   if (!(low.minCoeff() < -kSlack || high.maxCoeff() > 1 + kSlack)) return {};
   return {.corner = (low + high) / 2 - Vec2::Constant(side / 2), .side = side};
+}
+
+PageBorders page_borders(const LayoutLook& look) {
+  constexpr int kTilesARow = 10;
+  PageBorders borders;
+  if (look.is_cropped || look.page_count < 2) return borders;
+  for (int page = 0; page < look.page_count; ++page) {
+    const Vec2 corner(page % kTilesARow, page / kTilesARow);
+    const auto first = static_cast<Index>(borders.uv.size());
+    for (Index k = 0; k < 4; ++k) {
+      const Vec2 across(k == 1 || k == 2 ? 1 : 0, k >= 2 ? 1 : 0);
+      borders.uv.push_back((corner + across).cwiseProduct(look.tile));
+      borders.edges.push_back({first + k, first + (k + 1) % 4});
+    }
+  }
+  return borders;
 }
 
 }  // namespace unwrapd::figure

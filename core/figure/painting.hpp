@@ -60,6 +60,16 @@ struct Frame {
   [[nodiscard]] Vec2 place(const Vec2& uv) const { return (uv - corner) / side; }
 };
 
-Frame frame_of(std::span<const UnwrappedSurface> unwrapped);
+/// Lines between places on the page.
+struct PageBorders {
+  UvMap uv;
+  std::vector<Edge> edges;
+};
+
+/// The borders of pages that are shown beside each other; none of a single one.
+PageBorders page_borders(const LayoutLook& look);
+
+/// About all islands, and all pages if there are several.
+Frame frame_of(std::span<const UnwrappedSurface> unwrapped, const PageBorders& pages = {});
 
 }  // namespace unwrapd::figure

@@ -45,8 +45,9 @@ std::string Renderer::render(const store::JobRecord& job, const work::Rendering&
   const store::LoadedInput loaded(blobs_, job);
   const std::string uvs = blobs_.read(job.id, uv_file);
   std::string report;
-  const bool shows_page = rendering.picture && rendering.picture->page > 0;
-  if (shows_page || (!rendering.picture && !rendering.format))
+  const bool shows_pages =
+      rendering.picture && rendering.picture->kind != work::PictureKind::preview_png;
+  if (shows_pages || (!rendering.picture && !rendering.format))
     report = blobs_.read(job.id, work::map_file(blobs::kReportFile, rendering.map));
   return make(rendering,
               {.record = loaded.record(), .asset = loaded.input(), .uvs = uvs, .report = report},

@@ -70,7 +70,10 @@ figure::LayoutLook look_at_all(const Picture& picture, const Pages& pages, Surfa
   const Vec2 sides = sides_of(pages.size);
   const bool is_beyond = sides != Vec2::Ones() && lies_beyond(unwrapped);
   bring_to_page(sides, 0, unwrapped);
-  return {picture.colouring, is_beyond ? Vec2(Vec2::Ones()) : sides};
+  figure::LayoutLook look(picture.colouring, is_beyond ? Vec2(Vec2::Ones()) : sides);
+  look.page_count = pages.count;
+  look.tile = sides;
+  return look;
 }
 
 figure::LayoutLook look_at_page(const Picture& picture, const Pages& pages, Surfaces& unwrapped) {

@@ -47,7 +47,7 @@ struct RenderingInput {
   const store::JobRecord& record;
   asset::Input asset;
   std::string_view uvs;     ///< of the map: what encode_uvs() wrote
-  std::string_view report;  ///< of the map, JSON; of pictures only where they show one page
+  std::string_view report;  ///< of the map, JSON; of pictures only where they show pages
 };
 
 /// The bytes of the file. Throws what reading and writing the asset throw, storage_failed when the

@@ -118,6 +118,13 @@ test("two files are compared as they are, in a table and on a page", async () =>
   assert.equal((await unwrap("compare", "half.obj", "half.obj", "--quiet")).out, "");
 });
 
+test("the picture of several pages shows their borders", async () => {
+  writeFileSync(join(folder, "two.obj"), kSheet.replace("f 1 2 3", "usemtl a\nf 1 2 3\nusemtl b"));
+  const made = await unwrap("two.obj", "-q", "--group", "material", "--layout", "two.svg");
+  assert.equal(made.code, 0, made.err);
+  assert.match(readFileSync(join(folder, "two.svg"), "utf8"), /M40960 10240l0 20480/); // right side of the second
+});
+
 test("OBJs that become GLBs take their materials and the images of these along", async () => {
   const pixel = Buffer.from("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==", "base64");
   writeFileSync(join(folder, "a.obj"), `mtllib a.mtl\n${kSheet.replace("f 1", "usemtl wood\nf 1")}`);

@@ -50,6 +50,19 @@ long count_of(const Image& image, const Rgb& colour) {
   return count;
 }
 
+TEST(LayoutImage, ALineLiesBetweenTwoPages) {
+  const TriMesh mesh = merged(std::array{grid(1, 1), moved(grid(1, 1), {1.4, 0, 0})});
+  const UnwrappedSurface out = flattened(mesh, {0.8, 0.8});
+  const Surface surface = surface_of(mesh);
+  LayoutLook look;
+  look.page_count = 2;
+  const Image image = layout_image({&surface, 1}, {&out, 1}, look, kSize);
+  EXPECT_NE(at(image, 0.5, 0.7), kPage);
+  look.page_count = 1;
+  const Image plain = layout_image({&surface, 1}, {&out, 1}, look, kSize);
+  EXPECT_EQ(at(plain, 0.5, 0.7), kPage);
+}
+
 TEST(LayoutImage, VPointsUpAndTheIslandHasItsArea) {
   const TriMesh mesh = grid(5, 5);
   const Image image = picture(mesh, flattened(mesh, {0.5, 0.25}));

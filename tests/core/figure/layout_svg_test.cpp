@@ -72,6 +72,23 @@ TEST(LayoutSvg, AnIsometryHasOneColourAndItsBoundary) {
   EXPECT_EQ(count(paths[1], 'M'), 14);
 }
 
+TEST(LayoutSvg, SeveralPagesHaveBorders) {
+  const TriMesh mesh = merged(std::array{grid(1, 1), moved(grid(1, 1), {2, 0, 0})});
+  UnwrappedSurface out = flattened(mesh, 0.5);
+  const Surface surface = surface_of(mesh);
+  LayoutLook look;
+  const auto borders = [&] {
+    return count(path_data(layout_svg({&surface, 1}, {&out, 1}, look)).back(), 'M') - 8;
+  };
+  EXPECT_EQ(borders(), 0);
+  look.page_count = 2;
+  EXPECT_EQ(borders(), 8);
+  const std::string outer = path_data(layout_svg({&surface, 1}, {&out, 1}, look)).back();
+  EXPECT_NE(outer.find("M40960 10240l0 20480"), std::string::npos) << outer;  // right side of 2
+  look.is_cropped = true;
+  EXPECT_EQ(borders(), 0);
+}
+
 TEST(LayoutSvg, AFlippedTriangleIsInThePathOnTop) {
   TriMesh mesh = grid(2, 2);
   UnwrappedSurface out = flattened(mesh);
