@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/guarantee/quantize_uvs.hpp"
+#include "core/mesh/cross.hpp"
 
 namespace unwrapd::pipeline {
 namespace {
@@ -27,24 +28,32 @@ double area_of(const std::vector<Triangle>& faces, const UvMap& map) {
   double twice = 0;
   for (const Triangle& face : faces) {
     const auto at = [&](int i) { return map[static_cast<std::size_t>(face[i])]; };
-    const Vec2 a = at(1) - at(0), b = at(2) - at(0);
-    twice += std::abs(a.x() * b.y() - a.y() * b.x());
+    twice += std::abs(cross(at(1) - at(0), at(2) - at(0)));
   }
   return twice / 2;
 }
 
+/// visit(faces, map)
+template <class Visit>
+void for_each_island(Layout& layout, Visit visit) {
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k)
+      visit(layout.charts[s][k]->mesh.faces, layout.islands[s][k]);
+}
+
 }  // namespace
 
-void enlarge_tiny_islands(const std::vector<SizedIsland>& islands) {
+void enlarge_tiny_islands(Layout& layout) {
   double area = 0;
-  for (const SizedIsland& own : islands) area += area_of(own.chart->mesh.faces, *own.map);
+  for_each_island(layout,
+                  [&](const auto& faces, const UvMap& map) { area += area_of(faces, map); });
   const double step = std::sqrt(area) * guarantee::kUvStep;
-  for (const SizedIsland& own : islands) {
-    const double faces = static_cast<double>(own.chart->mesh.faces.size());
-    const double least = kLeastSteps * std::sqrt(faces) * step, side = longer_side(*own.map);
-    if (!(side > 0) || side >= least) continue;
-    for (Vec2& uv : *own.map) uv *= least / side;
-  }
+  for_each_island(layout, [&](const auto& faces, UvMap& map) {
+    const double least = kLeastSteps * std::sqrt(static_cast<double>(faces.size())) * step;
+    const double side = longer_side(map);
+    if (!(side > 0) || side >= least) return;
+    for (Vec2& uv : map) uv *= least / side;
+  });
 }
 
 }  // namespace unwrapd::pipeline

@@ -38,16 +38,12 @@ std::string kept_energy_of(Method method) {
 /// Places every chart on the page; the maps become page UVs.
 void pack_free_charts(Layout& layout, std::span<const Surface> surfaces,
                       const UnwrapOptions& options, Executor& executor) {
-  std::vector<SizedIsland> sized;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {
-      const charts::Chart& chart = *layout.charts[s][k];
-      UvMap& map = layout.islands[s][k];
-      const double density = density_of(chart, surfaces[s], options);
-      for (Vec2& uv : map) uv *= density;
-      sized.push_back({&chart, &map});
+      const double density = density_of(*layout.charts[s][k], surfaces[s], options);
+      for (Vec2& uv : layout.islands[s][k]) uv *= density;
     }
-  if (!options.packing.texels_per_unit) enlarge_tiny_islands(sized);
+  if (!options.packing.texels_per_unit) enlarge_tiny_islands(layout);
   IslandsToPlace islands;
   for (std::size_t s = 0; s < layout.islands.size(); ++s)
     for (std::size_t k = 0; k < layout.islands[s].size(); ++k) {

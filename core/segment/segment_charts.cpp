@@ -3,7 +3,8 @@
 // Everything else needs seams anyway, and then the best ones. So does a disk whose boundary is a
 // mere puncture: by the isoperimetric inequality it would have to be drawn out tenfold to enclose
 // the disk's area. Of a component that shall be one chart, the search's only chart is taken, or
-// else it is cut to a disk, however distorted; so is one of which too many charts are left.
+// else it is cut to a disk, however distorted. So is one of which merging leaves too many charts,
+// if the disk has a sound map.
 #include "core/segment/segment_charts.hpp"
 
 #include <algorithm>
