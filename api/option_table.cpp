@@ -184,8 +184,9 @@ constexpr std::array kRows = {
         "page."),
     figure<&Packing::texels_per_unit>(
         "texels_per_unit", {kMinTexelsPerUnit, kMaxTexelsPerUnit}, kEveryMethod,
-        "Texels for each unit of length of the mesh, on every island. Unset: as many as fit. Set "
-        "it to give several assets the same texel density; resolution is then auto unless given."),
+        "Texels for each unit of length on every island; in a glTF, of the scene: the scales of "
+        "its nodes count. Unset: as many as fit. Set it to give several assets the same texel "
+        "density; resolution is then auto unless given."),
     plain<&A::texel_density>(
         "texel_density", OptionType::text, kEveryMethod,
         "A painted attribute of vertices, from 0 to 1, such as COLOR_0.g or _DENSITY: charts get "

@@ -215,14 +215,14 @@ ConnectedSurface connect_surface(const solve::CacheContext&, const SurfaceNumber
 Charts placed(const ConnectedSurface& connected, const Surface& surface,
               std::span<const Triangle> welded, std::span<const EdgeEnds> kept,
               const std::stop_token& stop) {
-  const TriMesh& mesh = surface.mesh;
   Charts charts = connected.charts;
+  charts.scale = surface.scale;
   for (std::size_t k = 0; k < charts.charts.size(); ++k) {
     throw_if_cancelled(stop);
     Chart& chart = charts.charts[k];
     chart.mesh.positions.reserve(connected.vertex_source[k].size());
     for (const Index v : connected.vertex_source[k])
-      chart.mesh.positions.push_back(mesh.positions[v]);
+      chart.mesh.positions.push_back(surface.mesh.positions[v]);
     sort_by_length(chart.mesh, chart.loops);
     chart.avoid = avoid_of(chart, surface);
     if (!kept.empty()) mark_kept(welded, kept, chart);

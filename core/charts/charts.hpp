@@ -40,6 +40,7 @@ struct Charts {
   InputReport input;            ///< of this surface
   std::vector<Repair> repairs;  ///< the caller fills in Repair::surface
   std::shared_ptr<const Halfedges> by_position = {};  ///< of all faces, see seam_length.hpp
+  double scale = 1;                                   ///< Surface::scale
 };
 
 /// The seams of a surface in addition to its boundaries.

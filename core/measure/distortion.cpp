@@ -127,6 +127,14 @@ DistortionSums& DistortionSums::operator+=(const DistortionSums& other) {
   return *this;
 }
 
+DistortionSums DistortionSums::in_units(double scale) const {
+  const double square = scale * scale;
+  DistortionSums sums = *this;
+  for (double* areas : {&sums.area, &sums.measured, &sums.angle, &sums.collapsed}) *areas *= square;
+  for (double* products : {&sums.inverse, &sums.stretch}) *products *= square * square;
+  return sums;
+}
+
 double uv_area(std::span<const RestTriangle> rest, std::span<const Triangle> faces,
                std::span<const Vec2> uv, Executor& executor) {
   std::vector<double> sums(part_count(faces.size()), 0.0);

@@ -24,6 +24,9 @@ struct DistortionSums {
   Index degenerate = 0;    ///< triangles thinner than kMeasurable
 
   DistortionSums& operator+=(const DistortionSums& other);
+
+  /// The sums of the same map where a unit of the mesh is `scale` units.
+  [[nodiscard]] DistortionSums in_units(double scale) const;
 };
 
 /// The least height, relative to a triangle's longest side, with which it counts in D. The shape of

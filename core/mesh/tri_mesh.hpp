@@ -17,7 +17,7 @@ using Triangle = std::array<Index, 3>;  ///< vertex indices, counter-clockwise
 using UvMap = std::vector<Vec2>;        ///< one UV a vertex
 using CornerUv = std::array<Vec2, 3>;   ///< the UVs of a face's corners
 
-/// Triangles in space. Faces index positions; lengths are in the asset's own (mesh) units.
+/// Triangles in space. Faces index positions; lengths are in units of the mesh.
 struct TriMesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> faces;
@@ -41,6 +41,8 @@ struct Surface {
   /// Painted preferences, one a vertex, in [0, 1]; empty unless requested (ADR 0067).
   std::vector<double> seam_avoid = {};     ///< how dear seams are at the vertex
   std::vector<double> texel_density = {};  ///< how many more texels its surroundings get
+  /// Units of the scene in one of the mesh, where the scene shows it largest.
+  double scale = 1;
 };
 
 /// The result for a surface. Faces keep their number and order; a vertex on a seam is split.

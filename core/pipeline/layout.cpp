@@ -12,9 +12,9 @@
 #include "core/measure/seam_length.hpp"
 #include "core/pipeline/analyse.hpp"
 #include "core/pipeline/assemble.hpp"
+#include "core/pipeline/density.hpp"
 #include "core/pipeline/enlarge_tiny_islands.hpp"
 #include "core/pipeline/note_kept_edges.hpp"
-#include "core/pipeline/painted_density.hpp"
 #include "core/pipeline/place_islands.hpp"
 #include "core/segment/region_charts.hpp"
 
@@ -182,15 +182,16 @@ bool has_split_charts(const Layout& layout) {
 double border_of(const Prepared& all) {
   double length = 0;
   for (const charts::Charts& surface : all.surfaces)
-    for (const charts::Chart& chart : surface.charts) length += segment::weighted_boundary(chart);
+    for (const charts::Chart& chart : surface.charts)
+      length += surface.scale * segment::weighted_boundary(chart);
   return length;
 }
 
 double border_of(const Layout& layout) {
   double length = 0;
-  for (const auto& charts : layout.charts)
-    for (const std::shared_ptr<const charts::Chart>& chart : charts)
-      length += segment::weighted_boundary(*chart);
+  for (std::size_t s = 0; s < layout.charts.size(); ++s)
+    for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s])
+      length += layout.all->surfaces[s].scale * segment::weighted_boundary(*chart);
   return length;
 }
 
@@ -229,13 +230,14 @@ void measure_maps(Layout& layout, std::span<const Surface> surfaces, std::span<c
       const charts::Chart& chart = *layout.charts[s][k];
       UvMap uv = layout.islands[s][k];
       to_page_widths(uv, layout.report.page);
-      const double density = density_of(chart, surfaces[s], options);
+      const double density = painted_density(chart, surfaces[s], options);
       for (Vec2& u : uv) u /= density;  // what was asked for is no distortion
       measure::DistortionSums own =
           is_moved ? sums_in_file(chart, uv, given[s].mesh.positions, used.faces, executor)
                    : measure::distortion_sums(
                          measure::flatten(chart.mesh.positions, chart.mesh.faces, executor),
                          chart.mesh.faces, uv, executor);
+      own = own.in_units(surfaces[s].scale);
       own.flipped = report->distortion.flipped;  // by exact signs
       report->area = own.area;
       report->distortion = measure::distortion(own);
@@ -259,7 +261,7 @@ Unwrapped assemble_surfaces(std::span<const Surface> surfaces, Layout layout,
     const std::vector<double> seams = measure::seam_lengths(
         surfaces[s].mesh, *all.surfaces[s].by_position, unwrapped.surfaces.back(), stop);
     for (const std::shared_ptr<const charts::Chart>& chart : layout.charts[s]) {
-      for (const Index t : chart->face_source) report->seam_length += seams[t];
+      for (const Index t : chart->face_source) report->seam_length += seams[t] * surfaces[s].scale;
       ++report;
     }
   }

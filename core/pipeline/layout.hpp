@@ -35,7 +35,8 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options);
 
 bool has_split_charts(const Layout& layout);
 
-/// The length of all charts' borders before charts are mapped, by charts::seam_weight().
+/// The length of all charts' borders in the scene, before charts are mapped, by
+/// charts::seam_weight().
 double border_of(const Prepared& all);
 
 /// The same with those between the parts of split charts.

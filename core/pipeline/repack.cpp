@@ -46,12 +46,12 @@ measure::DistortionSums sums_of(const charts::Chart& chart, const UvMap& uv) {
   return measure::distortion_sums(chart.mesh, uv, serial);
 }
 
-/// Each island at the size at which its UV area is its area in space.
-void even_out(charts::UvIslands& islands) {
+/// Each island at the size at which its UV area is its area in the scene.
+void even_out(charts::UvIslands& islands, double scene_scale) {
   for (std::size_t k = 0; k < islands.maps.size(); ++k) {
     const measure::DistortionSums sums = sums_of(islands.charts.charts[k], islands.maps[k]);
     if (!(sums.area > 0 && sums.uv_area > 0)) continue;
-    const double scale = std::sqrt(sums.area / sums.uv_area);
+    const double scale = scene_scale * std::sqrt(sums.area / sums.uv_area);
     for (Vec2& uv : islands.maps[k]) uv *= scale;
     for (auto& [a, b] : islands.outlines[k]) a *= scale, b *= scale;
   }
@@ -74,7 +74,7 @@ void place(std::span<const Surface> surfaces, std::vector<charts::UvIslands>& al
   for (std::size_t s = 0; s < all.size(); ++s) {
     charts::UvIslands& own = all[s];
     widen_to_page(own, options.page_size());
-    if (options.packing.texels_per_unit) even_out(own);
+    if (options.packing.texels_per_unit) even_out(own, surfaces[s].scale);
     for (std::size_t k = 0; k < own.maps.size(); ++k) {
       const Index face = own.charts.charts[k].face_source.front();
       islands.add(own.outlines[k], own.maps[k], group_of(surfaces[s], face, options.packing.group));
@@ -215,11 +215,12 @@ void measure(std::span<const Surface> surfaces, const std::vector<charts::UvIsla
     for (std::size_t k = 0; k < charts.charts.size(); ++k) {
       UvMap map = all[s].maps[k];
       to_page_widths(map, report.page);
-      const measure::DistortionSums sums = sums_of(charts.charts[k], map);
+      const double scale = surfaces[s].scale;
+      const measure::DistortionSums sums = sums_of(charts.charts[k], map).in_units(scale);
       total += sums;
       report.charts.push_back(report_of(charts.charts[k], sums, s));
       for (const Index t : charts.charts[k].face_source)
-        report.charts.back().seam_length += seams[t];
+        report.charts.back().seam_length += seams[t] * scale;
       report.seam_length += report.charts.back().seam_length / 2;
     }
   }

@@ -16,6 +16,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/measure/rest_triangle.hpp"
+#include "core/segment/account.hpp"
 #include "core/segment/component_charts.hpp"
 #include "core/segment/region_charts.hpp"
 #include "core/segment/shared_segments.hpp"
@@ -35,43 +36,6 @@ double openness(const charts::Chart& component) {
   return length * length / (4 * std::numbers::pi * measure::surface_area(component.mesh));
 }
 
-/// Where the segmentation of all components stands: they weigh by their faces.
-class Account {
- public:
-  Account(const std::vector<charts::Charts>& surfaces, const SegmentWatch& watch) : watch_(watch) {
-    for (const charts::Charts& surface : surfaces)
-      for (const charts::Chart& component : surface.charts) {
-        total_ += faces_of(component);
-        area_ += measure::surface_area(component.mesh);
-      }
-  }
-
-  [[nodiscard]] SegmentRules rules(double max_distortion, const charts::Chart& component) const {
-    return {.max_distortion = max_distortion,
-            .page_area = area_ / measure::surface_area(component.mesh),
-            .on_progress =
-                [this, &component](Stage stage, double share) {
-                  if (watch_.on_progress)
-                    watch_.on_progress(stage, (done_ + share * faces_of(component)) / total_);
-                },
-            .stop = watch_.stop};
-  }
-  [[nodiscard]] const std::stop_token& stop() const { return watch_.stop; }
-  void finish(std::size_t faces) { done_ += static_cast<double>(faces); }
-  void tell() const {
-    if (watch_.on_progress) watch_.on_progress(Stage::merge, done_ / total_);
-  }
-
- private:
-  static double faces_of(const charts::Chart& component) {
-    return static_cast<double>(component.mesh.faces.size());
-  }
-
-  const SegmentWatch& watch_;
-  double total_ = 0, done_ = 0;
-  double area_ = 0;  ///< in space, of all components
-};
-
 void note(charts::Charts& surface, RepairKind kind, Index count) {
   if (count > 0) surface.repairs.push_back({kind, 0, count});
 }
@@ -83,12 +47,13 @@ struct Quotas {
   bool is_last = true;         ///< not only to see how many charts the components would like
 };
 
-/// What is done with components, one after another.
+/// What is done with the components of a surface, one after another.
 class Cutter {
  public:
-  Cutter(const SegmentOptions& options, const Quotas& quotas, const Account& account,
+  /// scale: of the surface.
+  Cutter(const SegmentOptions& options, const Quotas& quotas, double scale, const Account& account,
          Executor& executor)
-      : options_(options), quotas_(quotas), account_(account), executor_(executor) {}
+      : options_(options), quotas_(quotas), scale_(scale), account_(account), executor_(executor) {}
 
   [[nodiscard]] bool is_segmented(const charts::Chart& component, Index most) const {
     if (options_.one_chart_each) return false;
@@ -100,8 +65,8 @@ class Cutter {
 
   [[nodiscard]] ComponentRules rules_of(const charts::Chart& component, Index most) const {
     const bool has_bound = options_.max_distortion && !is_one(most);
-    SegmentRules rules =
-        account_.rules(has_bound ? *options_.max_distortion : kDefaultDistortion, component);
+    const double bound = has_bound ? *options_.max_distortion : kDefaultDistortion;
+    SegmentRules rules = account_.rules(bound, component, scale_);
     if (!is_one(most)) rules.most_regions = most;
     rules.effort = options_.effort;
     const bool may_stay = charts::is_disk(component) && openness(component) >= kLeastOpenness;
@@ -151,6 +116,7 @@ class Cutter {
 
   const SegmentOptions& options_;
   const Quotas& quotas_;
+  double scale_;
   const Account& account_;
   Executor& executor_;
 };
@@ -166,21 +132,25 @@ struct Cuts {
 };
 
 /// The charts of the components that are segmented, where other processes help with them: one a
-/// component, in the order of surfaces, empty for those that are not. Else nothing.
+/// component, in the order of surfaces, empty for those that are not. Else nothing. make_cutter():
+/// of a surface.
+template <class MakeCutter>
 std::vector<std::optional<ComponentCharts>> segment_together(
-    const std::vector<charts::Charts>& surfaces, const Quotas& quotas, const Cutter& cutter,
-    Account& account, Executor& executor) {
+    const std::vector<charts::Charts>& surfaces, const Quotas& quotas,
+    const MakeCutter& make_cutter, Account& account, Executor& executor) {
   if (executor.shared_work() == nullptr) return {};
   std::vector<ComponentJob> jobs;
   std::vector<std::size_t> places;
   std::size_t place = 0;
-  for (const charts::Charts& surface : surfaces)
+  for (const charts::Charts& surface : surfaces) {
+    const Cutter cutter = make_cutter(surface);
     for (const charts::Chart& component : surface.charts) {
       const Index most = quotas.most[place++];
       if (!cutter.is_segmented(component, most)) continue;
       jobs.push_back({&component, cutter.rules_of(component, most)});
       places.push_back(place - 1);
     }
+  }
   const auto on_done = [&](std::size_t job) {
     account.finish(jobs[job].component->mesh.faces.size());
     account.tell();
@@ -195,12 +165,14 @@ std::vector<std::optional<ComponentCharts>> segment_together(
 Cuts cut_all(std::vector<charts::Charts>& surfaces, const Quotas& quotas,
              const SegmentOptions& options, const SegmentWatch& watch, Executor& executor) {
   Account account(surfaces, watch);
-  const auto make_cutter = [&] { return Cutter(options, quotas, account, executor); };
-  auto made = segment_together(surfaces, quotas, make_cutter(), account, executor);
+  const auto make_cutter = [&](const charts::Charts& surface) {
+    return Cutter(options, quotas, surface.scale, account, executor);
+  };
+  auto made = segment_together(surfaces, quotas, make_cutter, account, executor);
   made.resize(quotas.most.size());
   Cuts cuts;
   for (charts::Charts& surface : surfaces) {
-    Cutter cutter = make_cutter();
+    Cutter cutter = make_cutter(surface);
     for (charts::Chart& component : std::exchange(surface.charts, {})) {
       const std::size_t place = cuts.became.size(), before = cutter.charts.size();
       const std::size_t faces = component.mesh.faces.size();

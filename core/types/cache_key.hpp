@@ -94,9 +94,9 @@ inline void describe(CacheKey& key, const TriMesh& mesh) {
 }
 
 inline void describe(CacheKey& key, const Surface& surface) {
-  const auto& [mesh, part, name, corner_uv, materials, seam_avoid, texel_density] = surface;
+  const auto& [mesh, part, name, corner_uv, materials, seam_avoid, texel_density, scale] = surface;
   key.add(mesh).add(part).add(name).add(corner_uv).add(materials);
-  key.add(seam_avoid).add(texel_density);
+  key.add(seam_avoid).add(texel_density).add(scale);
 }
 
 inline void describe(CacheKey& key, const SurfaceNumbers& surface) {

@@ -1,6 +1,7 @@
 #pragma once
 // What was done and how good it is: plain figures, measured on the UVs that are handed out.
-// Lengths are in mesh units, D has its ideal at 2, energies are divided by the surface area.
+// Lengths are in units of the scene (Surface::scale), D has its ideal at 2, energies are divided by
+// the surface area.
 
 #include <cstdint>
 #include <optional>
@@ -102,7 +103,7 @@ struct Report {
   double fill = 0;                           ///< UV area covered by islands ÷ area of the pages
   Index pages = 1;                           ///< that the islands take, see Packing
   PageSize page = {};                        ///< of each page
-  double texel_density = 0;                  ///< texels per mesh unit
+  double texel_density = 0;                  ///< texels per unit of length
   Guarantee guarantee = Guarantee::none;     ///< what holds of the UVs that are written
   std::vector<CurvePoint> curve = {};        ///< one for each lambda of a curve, in its order
   std::vector<std::string> page_names = {};  ///< what lies on each page, see PageGroup

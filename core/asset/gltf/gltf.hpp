@@ -15,6 +15,7 @@
 #include "core/asset/base/input.hpp"
 #include "core/asset/gltf/json.hpp"
 #include "core/asset/gltf/root.hpp"
+#include "core/mesh/placement.hpp"
 #include "core/mesh/tri_mesh.hpp"
 #include "core/types/asset_options.hpp"
 #include "core/types/file_repair.hpp"
@@ -102,7 +103,8 @@ struct Gltf {
   std::string other_chunks;                        ///< of a GLB, as they came, after JSON and BIN
   std::vector<View> views;
   std::vector<Accessor> accessors;
-  std::vector<Primitive> primitives;  ///< of all meshes, in order
+  std::vector<Primitive> primitives;               ///< of all meshes, in order
+  std::vector<std::vector<Placement>> placements;  ///< [mesh]: where nodes show it
   std::vector<Piece> pieces;
   std::vector<std::vector<Index>> vertices;  ///< [surface][vertex]: its number in the accessor
   std::size_t pool_count = 0;

@@ -1,6 +1,4 @@
-// The references of meshes and nodes. A mesh is unwrapped once, however many nodes show it, so that
-// nodes are only checked, by counting, without recursion. A node with two parents is accepted;
-// readers show it at both places.
+// The primitives of meshes, and their references.
 #include <algorithm>
 #include <tuple>
 
@@ -9,11 +7,6 @@
 
 namespace unwrapd::asset::reader {
 namespace {
-
-std::size_t list_size(const Gltf& gltf, std::string_view name) {
-  const auto list = Node(gltf.json).find(name);
-  return list ? list->array_size() : 0;
-}
 
 constexpr std::size_t kMaxNames = 65'536;  // of a primitive: each takes 400 bytes in tinygltf
 
@@ -105,41 +98,12 @@ std::optional<codec::DracoSource> checked_draco(const Gltf& gltf, const Node& no
   return read_draco(gltf, *draco, primitive);
 }
 
-/// The children of all nodes, one after another: those of node i begin at first[i].
-struct Children {
-  std::vector<std::size_t> node;
-  std::vector<std::size_t> first = {0};
-};
-
-/// Removes nodes, parents before their children, until none is left (Kahn 1962). Linear however
-/// many parents a node has.
-void check_no_cycle(const Children& children, std::vector<std::size_t> parent_counts) {
-  const std::size_t count = parent_counts.size();
-  std::vector<std::size_t> free;
-  for (std::size_t i = 0; i < count; ++i)
-    if (parent_counts[i] == 0) free.push_back(i);
-  for (std::size_t k = 0; k < free.size(); ++k)
-    for (std::size_t c = children.first[free[k]]; c < children.first[free[k] + 1]; ++c)
-      if (--parent_counts[children.node[c]] == 0) free.push_back(children.node[c]);
-  if (free.size() == count) return;
-  const auto in_cycle = std::find_if(parent_counts.begin(), parent_counts.end(),
-                                     [](std::size_t parents) { return parents > 0; });
-  fail(ErrorCode::malformed_gltf,
-       Place().at("nodes").at(static_cast<std::size_t>(in_cycle - parent_counts.begin())),
-       "the node is its own ancestor, or below one that is; break the cycle of children");
-}
-
-void check_scenes(const Gltf& gltf, std::size_t node_count) {
-  const auto scenes = Node(gltf.json).find("scenes");
-  const std::size_t count = scenes ? scenes->array_size() : 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto nodes = scenes->at(i).find("nodes");
-    for (std::size_t k = 0; nodes && k < nodes->array_size(); ++k)
-      static_cast<void>(nodes->at(k).index(node_count, "nodes"));
-  }
-}
-
 }  // namespace
+
+std::size_t list_size(const Gltf& gltf, std::string_view name) {
+  const auto list = Node(gltf.json).find(name);
+  return list ? list->array_size() : 0;
+}
 
 std::vector<codec::DracoSource> read_meshes(Gltf& gltf) {
   std::vector<codec::DracoSource> sources;
@@ -172,29 +136,6 @@ std::vector<codec::DracoSource> read_meshes(Gltf& gltf) {
   }
   slices.end();
   return sources;
-}
-
-void check_nodes(Gltf& gltf) {
-  const std::size_t count = list_size(gltf, "nodes");
-  const std::size_t mesh_count = list_size(gltf, "meshes");
-  std::vector<std::size_t> parent_counts(count, 0);
-  Children children;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Node node = Node(gltf.json).at("nodes").at(i);
-    if (const auto mesh = node.find("mesh")) static_cast<void>(mesh->index(mesh_count, "meshes"));
-    const auto list = node.find("children");
-    const std::size_t child_count = list ? list->array_size() : 0;
-    for (std::size_t k = 0; k < child_count; ++k) {
-      children.node.push_back(list->at(k).index(count, "nodes"));
-      ++parent_counts[children.node.back()];
-    }
-    children.first.push_back(children.node.size());
-  }
-  check_no_cycle(children, parent_counts);
-  check_scenes(gltf, count);
-  const auto shared = std::count_if(parent_counts.begin(), parent_counts.end(),
-                                    [](std::size_t parents) { return parents > 1; });
-  if (shared > 0) gltf.repairs.push_back({FileRepairKind::shared_nodes_kept, shared});
 }
 
 }  // namespace unwrapd::asset::reader

@@ -48,13 +48,14 @@ Gltf read_gltf(const Input& input, Format format, const ReadLimits& limits,
     read_accessors(gltf);
     static_cast<void>(read_meshes(gltf));
   }
-  check_nodes(gltf);
+  read_nodes(gltf);
   gltf.aside.take_unwritten(gltf.json);
   select_primitives(gltf, options);
   if (options.textures == TextureMode::transfer) gltf.transfer = {options.page, limits.max_bytes};
   choose_texcoord(gltf, options.texcoord);
   check_geometry(gltf, limits);
   surfaces = build_surfaces(gltf, limits);
+  set_scales(gltf, surfaces);
   if (gltf.transfer) check_textures(gltf);
   return gltf;
 }

@@ -11,6 +11,9 @@
 
 namespace unwrapd::asset::reader {
 
+/// How many entries a list of the root has; 0 without it. Throws when it is no array.
+std::size_t list_size(const Gltf& gltf, std::string_view name);
+
 /// Requires version 2.x, and that every required extension is known.
 void check_asset_and_extensions(Gltf& gltf);
 
@@ -24,9 +27,10 @@ void read_views(Gltf& gltf);
 
 void read_accessors(Gltf& gltf);
 
-/// Reads meshes, and checks the graph of nodes: references, no cycle.
 std::vector<codec::DracoSource> read_meshes(Gltf& gltf);
-void check_nodes(Gltf& gltf);
+
+/// Checks the graph of nodes: references, no cycle. Fills placements.
+void read_nodes(Gltf& gltf);
 
 /// Checks types and counts of the data of triangles, and the limits.
 void check_geometry(Gltf& gltf, const ReadLimits& limits);
@@ -41,6 +45,9 @@ void choose_texcoord(Gltf& gltf, const std::variant<int, TexcoordChoice>& asked)
 
 /// One surface for each mesh that has triangles of its own; fills pieces, vertices and pools.
 std::vector<Surface> build_surfaces(Gltf& gltf, const ReadLimits& limits);
+
+/// Fills Surface::scale from the placements.
+void set_scales(const Gltf& gltf, std::vector<Surface>& surfaces);
 
 /// Fills corner_uv from the attribute gltf.uvs_from, on the surfaces that have it.
 void read_gltf_uvs(const Gltf& gltf, std::vector<Surface>& surfaces);

@@ -1,5 +1,5 @@
 // Charts that are painted to have more texels. Their scale is measured from the UVs of the result.
-#include "core/pipeline/painted_density.hpp"
+#include "core/pipeline/density.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -101,6 +101,69 @@ TEST(PaintedDensity, GoesByTheMeanOverAChartsArea) {
   for (const Vec3& p : sheet.positions) surface.texel_density.push_back(p.x() / 3);
   const charts::Charts charts = charts::components_of(surface, {});
   EXPECT_NEAR(pipeline::density_of(charts.charts.front(), surface, {}), 2, 1e-12);
+}
+
+/// Two boxes of their own, of which the scene shows the second at this scale.
+std::vector<Surface> scene(double scale) {
+  std::vector<Surface> surfaces = {surface_of(cube(2)), surface_of(cube(2))};
+  for (Vec3& p : surfaces[1].mesh.positions) p *= 0.7;
+  surfaces[1].scale = scale;
+  return surfaces;
+}
+
+/// The same boxes as the scene shows them.
+std::vector<Surface> as_shown(std::vector<Surface> surfaces) {
+  for (Surface& surface : surfaces) {
+    for (Vec3& p : surface.mesh.positions) p *= surface.scale;
+    surface.scale = 1;
+  }
+  return surfaces;
+}
+
+/// The report of the scene is that of the boxes as it shows them. The scale is a power of two, so
+/// that nothing is rounded.
+void expect_as_shown(UnwrapOptions options) {
+  SerialExecutor serial;
+  std::vector<Surface> small = scene(8);
+  if (options.keeps_uvs())
+    for (Surface& surface : small)
+      for (const Triangle& face : surface.mesh.faces) {
+        CornerUv& uv = surface.corner_uv.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k)
+          uv[k] = surface.mesh.positions[std::size_t(face[k])].head<2>() +
+                  Vec2::Constant(surface.mesh.positions[std::size_t(face[k])].z() / 3);
+      }
+  const std::vector<Surface> shown = as_shown(small);
+  const Unwrapped own = unwrap(small, options, {}, serial);
+  const Unwrapped other = unwrap(shown, options, {}, serial);
+  for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(own.surfaces[s].uv, other.surfaces[s].uv);
+  EXPECT_DOUBLE_EQ(own.report.texel_density, other.report.texel_density);
+  EXPECT_DOUBLE_EQ(own.report.area, other.report.area);
+  EXPECT_DOUBLE_EQ(own.report.seam_length, other.report.seam_length);
+  EXPECT_DOUBLE_EQ(own.report.seam_ratio, other.report.seam_ratio);
+  EXPECT_DOUBLE_EQ(own.report.distortion.angle, other.report.distortion.angle);
+  EXPECT_DOUBLE_EQ(own.report.distortion.area, other.report.distortion.area);
+  EXPECT_DOUBLE_EQ(own.report.distortion.stretch, other.report.distortion.stretch);
+  ASSERT_EQ(own.report.charts.size(), other.report.charts.size());
+  for (std::size_t k = 0; k < own.report.charts.size(); ++k) {
+    EXPECT_DOUBLE_EQ(own.report.charts[k].area, other.report.charts[k].area);
+    EXPECT_DOUBLE_EQ(own.report.charts[k].seam_length, other.report.charts[k].seam_length);
+  }
+}
+
+TEST(SceneScale, CountsAsIfTheMeshHadIt) {
+  expect_as_shown({.max_distortion = 2.02});
+  UnwrapOptions at_density{.max_distortion = 2.02, .page_fit = PageFit::multiple_of_four};
+  at_density.packing.texels_per_unit = 40;
+  expect_as_shown(at_density);
+}
+
+TEST(SceneScale, CountsWhereUvsAreKept) {
+  expect_as_shown({.repack_only = true});
+  expect_as_shown({.measure_only = true});
+  UnwrapOptions at_density{.page_fit = PageFit::multiple_of_four, .repack_only = true};
+  at_density.packing.texels_per_unit = 40;
+  expect_as_shown(at_density);
 }
 
 }  // namespace

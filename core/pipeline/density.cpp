@@ -1,4 +1,4 @@
-#include "core/pipeline/painted_density.hpp"
+#include "core/pipeline/density.hpp"
 
 #include <Eigen/Geometry>
 
@@ -6,8 +6,8 @@
 
 namespace unwrapd::pipeline {
 
-double density_of(const charts::Chart& chart, const Surface& surface,
-                  const UnwrapOptions& options) {
+double painted_density(const charts::Chart& chart, const Surface& surface,
+                       const UnwrapOptions& options) {
   if (surface.texel_density.empty() || !options.constraints.empty()) return 1;
   double sum = 0, area = 0;
   for (const Index t : chart.face_source) {
@@ -21,6 +21,11 @@ double density_of(const charts::Chart& chart, const Surface& surface,
     area += own;
   }
   return area > 0 ? std::pow(kMostDensity, sum / area) : 1;
+}
+
+double density_of(const charts::Chart& chart, const Surface& surface,
+                  const UnwrapOptions& options) {
+  return options.constraints.empty() ? painted_density(chart, surface, options) * surface.scale : 1;
 }
 
 }  // namespace unwrapd::pipeline

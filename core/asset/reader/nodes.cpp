@@ -1,0 +1,182 @@
+// The nodes of a document: their references, and where they put meshes. A node with two parents is
+// accepted; readers show it at both places, and here it lies where the first of them puts it.
+// Animations, and the extension that gives a node many instances, move nothing here.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/asset/gltf/elements.hpp"
+#include "core/asset/reader/steps.hpp"
+
+namespace unwrapd::asset::reader {
+namespace {
+
+/// The children of all nodes, one after another: those of node i begin at first[i].
+struct Children {
+  std::vector<std::size_t> node;
+  std::vector<std::size_t> first = {0};
+  std::vector<std::size_t> parent_counts;  ///< one a node
+
+  template <class Visit>
+  void for_each(std::size_t parent, Visit visit) const {
+    for (std::size_t c = first[parent]; c < first[parent + 1]; ++c) visit(node[c]);
+  }
+};
+
+Children checked_children(const Gltf& gltf) {
+  const std::size_t count = list_size(gltf, "nodes");
+  const std::size_t mesh_count = list_size(gltf, "meshes");
+  Children children;
+  children.parent_counts.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Node node = Node(gltf.json).at("nodes").at(i);
+    if (const auto mesh = node.find("mesh")) static_cast<void>(mesh->index(mesh_count, "meshes"));
+    const auto list = node.find("children");
+    const std::size_t child_count = list ? list->array_size() : 0;
+    for (std::size_t k = 0; k < child_count; ++k) {
+      children.node.push_back(list->at(k).index(count, "nodes"));
+      ++children.parent_counts[children.node.back()];
+    }
+    children.first.push_back(children.node.size());
+  }
+  return children;
+}
+
+/// All nodes, parents before their children (Kahn 1962). Linear however many parents a node has.
+std::vector<std::size_t> parents_first(const Children& children) {
+  std::vector<std::size_t> waits_for = children.parent_counts, order;
+  for (std::size_t i = 0; i < waits_for.size(); ++i)
+    if (waits_for[i] == 0) order.push_back(i);
+  for (std::size_t k = 0; k < order.size(); ++k)
+    children.for_each(order[k], [&](std::size_t child) {
+      if (--waits_for[child] == 0) order.push_back(child);
+    });
+  if (order.size() == waits_for.size()) return order;
+  const auto in_cycle = std::ranges::find_if(waits_for, [](std::size_t n) { return n > 0; });
+  fail(ErrorCode::malformed_gltf,
+       Place().at("nodes").at(static_cast<std::size_t>(in_cycle - waits_for.begin())),
+       "the node is its own ancestor, or below one that is; break the cycle of children");
+}
+
+void check_scenes(const Gltf& gltf, std::size_t node_count) {
+  const auto scenes = Node(gltf.json).find("scenes");
+  const std::size_t count = scenes ? scenes->array_size() : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto nodes = scenes->at(i).find("nodes");
+    for (std::size_t k = 0; nodes && k < nodes->array_size(); ++k)
+      static_cast<void>(nodes->at(k).index(node_count, "nodes"));
+  }
+}
+
+/// The numbers of a member, or what they are without it. Only UVs depend on them, so that a wrong
+/// member is no reason to refuse an asset.
+template <std::size_t N>
+std::array<double, N> numbers(const Json& node, const char* name, std::array<double, N> otherwise) {
+  const auto member = node.find(name);
+  if (member == node.end() || !member->is_array() || member->size() != N) return otherwise;
+  std::array<double, N> read;
+  for (std::size_t k = 0; k < N; ++k) {
+    if (!member->at(k).is_number()) return otherwise;
+    read[k] = member->at(k).get<double>();
+  }
+  return read;
+}
+
+/// A matrix by columns (glTF 2.0, Sec. 3.5.2).
+Placement from_columns(const std::array<double, 16>& m) {
+  Placement placement;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row)
+      placement.linear(row, column) = m[static_cast<std::size_t>(4 * column + row)];
+  placement.origin = {m[12], m[13], m[14]};
+  return placement;
+}
+
+Placement local_placement(const Json& node) {
+  if (node.contains("matrix"))
+    return from_columns(
+        numbers<16>(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
+  const auto [x, y, z, w] = numbers<4>(node, "rotation", {0, 0, 0, 1});
+  const auto scale = numbers<3>(node, "scale", {1, 1, 1});
+  const auto move = numbers<3>(node, "translation", {0, 0, 0});
+  Eigen::Quaterniond turn(w, x, y, z);
+  if (turn.norm() > 0)
+    turn.normalize();
+  else
+    turn.setIdentity();
+  Placement placement;
+  placement.linear = turn.toRotationMatrix() * Vec3(scale[0], scale[1], scale[2]).asDiagonal();
+  placement.origin = {move[0], move[1], move[2]};
+  return placement;
+}
+
+/// The inverse bind matrix of a skin's first joint.
+Placement inverse_bind(const Gltf& gltf, const Json& skin) {
+  const auto member = skin.find("inverseBindMatrices");
+  if (member == skin.end() || !member->is_number_unsigned()) return {};
+  const auto accessor = member->get<std::size_t>();
+  if (accessor >= gltf.accessors.size() || gltf.accessors[accessor].components != 16 ||
+      gltf.accessors[accessor].count == 0)
+    return {};
+  const Elements matrices(gltf, accessor);
+  std::array<double, 16> m;
+  for (std::size_t k = 0; k < m.size(); ++k) m[k] = matrices.component_of(0, k);
+  return from_columns(m);
+}
+
+/// A skinned mesh lies where its joints put it, and not where its node is (Sec. 3.7.3.3): here,
+/// where the first joint does.
+std::optional<Placement> placement_by_skin(const Gltf& gltf, const Json& node,
+                                           const std::vector<Placement>& world) {
+  const auto number = node.find("skin");
+  const auto skins = gltf.json.find("skins");
+  if (number == node.end() || !number->is_number_unsigned() || skins == gltf.json.end() ||
+      !skins->is_array() || number->get<std::size_t>() >= skins->size())
+    return std::nullopt;
+  const Json& skin = skins->at(number->get<std::size_t>());
+  const auto joints = skin.is_object() ? skin.find("joints") : skin.end();
+  if (joints == skin.end() || !joints->is_array() || joints->empty() ||
+      !joints->front().is_number_unsigned() || joints->front().get<std::size_t>() >= world.size())
+    return std::nullopt;
+  return world[joints->front().get<std::size_t>()] * inverse_bind(gltf, skin);
+}
+
+/// The place of every node in the space of its scene.
+std::vector<Placement> world_placements(const Json& nodes, const Children& children,
+                                        const std::vector<std::size_t>& order) {
+  std::vector<Placement> world(order.size());
+  std::vector<char> has_parent(order.size());
+  for (const std::size_t i : order) {
+    const Placement own = local_placement(nodes.at(i));
+    world[i] = has_parent[i] != 0 ? world[i] * own : own;
+    children.for_each(i, [&](std::size_t child) {
+      if (has_parent[child] == 0) world[child] = world[i];
+      has_parent[child] = 1;
+    });
+  }
+  return world;
+}
+
+}  // namespace
+
+void read_nodes(Gltf& gltf) {
+  const Children children = checked_children(gltf);
+  const std::vector<std::size_t> order = parents_first(children);
+  check_scenes(gltf, order.size());
+  const auto shared = std::ranges::count_if(children.parent_counts,
+                                            [](std::size_t parents) { return parents > 1; });
+  if (shared > 0) gltf.repairs.push_back({FileRepairKind::shared_nodes_kept, shared});
+  gltf.placements.resize(list_size(gltf, "meshes"));
+  if (order.empty()) return;
+  const Json& nodes = gltf.json.at("nodes");
+  const std::vector<Placement> world = world_placements(nodes, children, order);
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    const auto mesh = nodes.at(i).find("mesh");
+    if (mesh == nodes.at(i).end()) continue;
+    const Placement placement = placement_by_skin(gltf, nodes.at(i), world).value_or(world[i]);
+    if (placement.linear.allFinite() && placement.origin.allFinite())
+      gltf.placements[mesh->get<std::size_t>()].push_back(placement);
+  }
+}
+
+}  // namespace unwrapd::asset::reader

@@ -1,0 +1,87 @@
+// How large a scene shows its meshes. The page has texels for what is seen: a mesh of one unit that
+// a node makes ten times as large gets ten times the texels along its sides.
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/asset/base/as_size.hpp"
+#include "core/asset/reader/steps.hpp"
+
+namespace unwrapd::asset::reader {
+namespace {
+
+/// Of nodes that show a mesh smaller or larger, a scale is an error or hides the mesh.
+constexpr double kLeastScale = 1e-12, kGreatestScale = 1e12;
+constexpr double kRounding = 1e-5;  ///< of scales by products of floats
+
+/// The sum of A_t n n^T over the faces: how much area looks in which direction.
+Eigen::Matrix3d areas_by_direction(const TriMesh& mesh) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const auto& [a, b, c] : mesh.faces) {
+    const Vec3& at = mesh.positions[as_size(a)];
+    const Vec3 twice = (mesh.positions[as_size(b)] - at).cross(mesh.positions[as_size(c)] - at);
+    if (const double length = twice.norm(); length > 0) sum += twice * twice.transpose() / length;
+  }
+  return sum;
+}
+
+/// The cofactors of a matrix map the normal of an area, as long as the area, to that of its image.
+Eigen::Matrix3d cofactors(const Eigen::Matrix3d& m) {
+  Eigen::Matrix3d cofactor;
+  for (int k = 0; k < 3; ++k) cofactor.row(k) = m.row((k + 1) % 3).cross(m.row((k + 2) % 3));
+  return cofactor;
+}
+
+/// The cofactors of the placement that shows a mesh largest. Of one mesh there are few, so that
+/// many nodes of a mesh with many surfaces do not multiply.
+std::optional<Eigen::Matrix3d> largest(const std::vector<Placement>& placements) {
+  std::optional<Eigen::Matrix3d> greatest;
+  for (const Placement& placement : placements) {
+    const Eigen::Matrix3d own = cofactors(placement.linear);
+    if (!greatest || own.squaredNorm() > greatest->squaredNorm()) greatest = own;
+  }
+  return greatest;
+}
+
+/// The root of how many times its area the mesh has in the scene: of the root mean square over its
+/// faces, which is exact for one scale in all directions, and for a plane.
+std::optional<double> scale_of(const Eigen::Matrix3d& cofactor, const Eigen::Matrix3d& areas) {
+  const double ratio = (cofactor * areas * cofactor.transpose()).trace() / areas.trace();
+  const double scale = std::pow(ratio, 0.25);
+  if (!(scale >= kLeastScale && scale <= kGreatestScale)) return std::nullopt;
+  return std::abs(scale - 1) <= kRounding ? 1 : scale;
+}
+
+/// The meshes of which the surface has faces: its own, and those with the same geometry.
+std::vector<std::vector<std::size_t>> meshes_of_surfaces(const Gltf& gltf, std::size_t count) {
+  std::vector<std::vector<std::size_t>> meshes(count);
+  for (const Primitive& primitive : gltf.primitives) {
+    if (!primitive.has_triangles) continue;
+    std::vector<std::size_t>& own = meshes[gltf.pieces[primitive.piece].surface];
+    if (own.empty() || own.back() != primitive.mesh) own.push_back(primitive.mesh);
+  }
+  return meshes;
+}
+
+}  // namespace
+
+void set_scales(const Gltf& gltf, std::vector<Surface>& surfaces) {
+  const auto meshes = meshes_of_surfaces(gltf, surfaces.size());
+  std::vector<std::optional<Eigen::Matrix3d>> shown;
+  for (const std::vector<Placement>& placements : gltf.placements)
+    shown.push_back(largest(placements));
+  std::vector<std::optional<double>> scales(surfaces.size());
+  std::optional<double> least;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    const Eigen::Matrix3d areas = areas_by_direction(surfaces[s].mesh);
+    for (const std::size_t mesh : meshes[s])
+      if (shown[mesh]) scales[s] = std::max(scales[s], scale_of(*shown[mesh], areas));
+    if (scales[s]) least = std::min(*scales[s], least.value_or(*scales[s]));
+  }
+  for (std::size_t s = 0; s < surfaces.size(); ++s)
+    surfaces[s].scale = scales[s].value_or(least.value_or(1));
+}
+
+}  // namespace unwrapd::asset::reader

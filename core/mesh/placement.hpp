@@ -1,0 +1,23 @@
+#pragma once
+// Where a scene shows a mesh.
+
+#include <Eigen/Core>
+
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd {
+
+/// An affine map from a mesh's own coordinates to those of its scene.
+struct Placement {
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
+  Vec3 origin = Vec3::Zero();
+
+  Vec3 operator()(const Vec3& position) const { return linear * position + origin; }
+};
+
+/// First b, then a.
+inline Placement operator*(const Placement& a, const Placement& b) {
+  return {a.linear * b.linear, a(b.origin)};
+}
+
+}  // namespace unwrapd

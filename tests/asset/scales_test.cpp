@@ -1,0 +1,125 @@
+// How large a scene shows its meshes, read from nodes, matrices and skins.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/asset/support.hpp"
+
+namespace unwrapd::asset {
+namespace {
+
+using namespace test;
+
+/// Two meshes of different geometry in the plane z = 0, shown by these nodes.
+Builder two_meshes(const std::string& nodes) {
+  Builder b;
+  b.json["meshes"] = Json::array();
+  for (const double side : {1, 3}) {
+    const std::size_t corners = b.add("VEC3", 5126, {0, 0, 0, side, 0, 0, 0, side, 0});
+    b.json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", corners}}}}}}});
+  }
+  b.json["nodes"] = Json::parse(nodes);
+  return b;
+}
+
+std::vector<double> scales_of(const Builder& b) {
+  const Asset asset = read_file(b.glb());
+  std::vector<double> scales;
+  for (const Surface& surface : asset.surfaces()) scales.push_back(surface.scale);
+  return scales;
+}
+
+void expect_scales(const std::string& nodes, double first, double second) {
+  const std::vector<double> scales = scales_of(two_meshes(nodes));
+  ASSERT_EQ(scales.size(), 2U);
+  EXPECT_NEAR(scales[0], first, 1e-9 * first) << nodes;
+  EXPECT_NEAR(scales[1], second, 1e-9 * second) << nodes;
+}
+
+TEST(Scales, MultiplyAlongTheParents) {
+  expect_scales(R"([{"mesh": 0, "scale": [2, 2, 2], "children": [1]},
+                    {"scale": [0.5, 0.5, 0.5], "rotation": [0, 0.6, 0, 0.8], "children": [2]},
+                    {"mesh": 1, "scale": [7, 7, 7], "translation": [5, 5, 5]}])",
+                2, 7);
+}
+
+TEST(Scales, AreThoseOfMatrices) {
+  expect_scales(R"([{"mesh": 0, "matrix": [0, 3, 0, 0, -3, 0, 0, 0, 0, 0, 3, 0, 9, 9, 9, 1]},
+                    {"mesh": 1, "matrix": [-4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1]}])",
+                3, 4);
+}
+
+TEST(Scales, AreThoseOfTheArea) {
+  expect_scales(R"([{"mesh": 0, "scale": [8, 8, 1]}, {"mesh": 1, "scale": [2, 8, 500]}])", 8, 4);
+  expect_scales(R"([{"mesh": 0, "scale": [8, 8, 0]}, {"mesh": 1, "rotation": [0, 0, 0, 5]}])", 8,
+                1);
+}
+
+TEST(Scales, AreThoseOfTheLargestShown) {
+  expect_scales(R"([{"mesh": 0, "scale": [2, 2, 2]}, {"mesh": 1}, {"mesh": 0},
+                    {"mesh": 1, "scale": [0.1, 0.1, 0.1]}])",
+                2, 1);
+}
+
+TEST(Scales, OfWhatNoNodeShowsAreTheLeastOfTheOthers) {
+  expect_scales(R"([{"mesh": 1, "scale": [0.01, 0.01, 0.01]}])", 0.01, 0.01);
+  expect_scales(R"([{"mesh": 0, "scale": [0, 0, 0]}, {"mesh": 1, "scale": [0.01, 0.01, 0.01]}])",
+                0.01, 0.01);
+  expect_scales("[{}]", 1, 1);
+}
+
+TEST(Scales, CountWithoutRoundingWhereNodesOnlyTurn) {
+  const std::vector<double> scales = scales_of(
+      two_meshes(R"([{"mesh": 0, "rotation": [0.1825742, 0.3651484, 0.5477226, 0.7302967]},
+                               {"mesh": 1, "scale": [1.0000001, 0.9999999, 1]}])"));
+  EXPECT_EQ(scales[0], 1);
+  EXPECT_EQ(scales[1], 1);
+}
+
+TEST(Scales, AreOneWhereMembersAreWrong) {
+  for (const char* node :
+       {R"({"mesh": 0, "scale": [2, 2]})", R"({"mesh": 0, "scale": "2"})",
+        R"({"mesh": 0, "scale": [2, 2, null]})", R"({"mesh": 0, "matrix": [1, 2]})",
+        R"({"mesh": 0, "rotation": [0, 0, 0, 0]})",
+        R"({"mesh": 0, "scale": [1e300, 1e300, 1e300]})", R"({"mesh": 0, "skin": 3})",
+        R"({"mesh": 0, "skin": "0"})"})
+    expect_scales("[" + std::string(node) + R"(, {"mesh": 1}])", 1, 1);
+}
+
+TEST(Scales, OfSkinnedMeshesAreThoseOfTheirJoints) {
+  Builder b = two_meshes(R"([{"mesh": 0, "skin": 0, "scale": [50, 50, 50]}, {"mesh": 1},
+                             {"scale": [0.5, 0.5, 0.5], "children": [3]}, {"name": "joint"}])");
+  b.json["skins"] = {{{"joints", {3, 2}}}};
+  EXPECT_EQ(scales_of(b)[0], 0.5);
+  b.json["skins"][0]["inverseBindMatrices"] =
+      b.add("MAT4", 5126, {6, 0, 0, 0, 0, 6, 0, 0, 0, 0, 6, 0, 1, 2, 3, 1});
+  EXPECT_EQ(scales_of(b)[0], 3);
+}
+
+TEST(Scales, ReachMeshesOfTheSameGeometry) {
+  Builder b = square();
+  b.json["meshes"].push_back(b.json["meshes"][0]);
+  b.json["nodes"] = Json::parse(R"([{"mesh": 0}, {"mesh": 1, "scale": [3, 3, 3]}])");
+  EXPECT_EQ(scales_of(b), std::vector<double>{3});
+}
+
+TEST(Scales, AreReadAtOnceHoweverManyNodesShowManySurfaces) {
+  Builder b = square();
+  const Json primitive = b.json["meshes"][0]["primitives"][0];
+  for (int i = 0; i < 2'000; ++i) {  // each a surface; mesh 2,001 has all of them
+    const std::size_t corners = b.add("VEC3", 5126, {0, 0, 0, 1. + i, 0, 0, 0, 1, 0});
+    b.json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", corners}}}}}}});
+  }
+  Json all = Json::array();
+  for (int i = 1; i <= 2'000; ++i) all.push_back(b.json["meshes"][std::size_t(i)]["primitives"][0]);
+  b.json["meshes"].push_back({{"primitives", all}});
+  b.json["nodes"] = Json::array();
+  for (int i = 0; i < 50'000; ++i)
+    b.json["nodes"].push_back({{"mesh", 2'001}, {"scale", {i / 1e4, i / 1e4, i / 1e4}}});
+  const std::vector<double> scales = scales_of(b);
+  EXPECT_EQ(scales.size(), 2'001U);
+  EXPECT_NEAR(scales.back(), 4.9999, 1e-9);
+}
+
+}  // namespace
+}  // namespace unwrapd::asset
