@@ -48,7 +48,7 @@ export function plan(methods, optionNames) {
   ];
 }
 
-/** The area of the surface that a report tells of, in the mesh's own units. */
+/** The area of the surface that a report tells of. */
 export function areaOf(report) {
   return report.charts.reduce((sum, chart) => sum + chart.area, 0);
 }

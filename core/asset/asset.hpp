@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/asset/base/input.hpp"
+#include "core/mesh/placement.hpp"
 #include "core/mesh/tri_mesh.hpp"
 #include "core/types/asset_options.hpp"
 #include "core/types/file_repair.hpp"
@@ -56,6 +57,12 @@ void read_uvs(Asset& asset);
 /// Fills Surface::materials: a glTF's materials by JSON pointer ("/materials/0"), an OBJ's by name;
 /// "" where there is none. Meshes that share geometry have the materials of the first.
 void name_materials(Asset& asset);
+
+/// Where the scene shows the surfaces, in the order of nodes: each as often as nodes show it while
+/// that makes no more than kMostShownFaces or twice the asset's own, else once. A surface that no
+/// node shows is left out. Empty if the surfaces lie where their own coordinates put them.
+inline constexpr std::size_t kMostShownFaces = 200'000;
+std::vector<ShownSurface> shown_surfaces(const Asset& asset);
 
 /// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data
 /// URIs). unwrapped has one entry for each of asset.surfaces(). Tangents of replaced texture

@@ -29,13 +29,14 @@ measure::RestTriangle laid_flat(const Vec3& a, const Vec3& b, const Vec3& c) {
   return rest;
 }
 
-/// Calls visit(face number, area, jacobian) for every face with an area.
+/// Calls visit(face number, area, jacobian) for every face with an area, in units of the scene.
 template <class Visit>
-void for_each_face(const TriMesh& mesh, const UnwrappedSurface& unwrapped, Visit visit) {
+void for_each_face(const Surface& surface, const UnwrappedSurface& unwrapped, Visit visit) {
+  const TriMesh& mesh = surface.mesh;
+  const auto at = [&](Index v) { return Vec3(surface.scale * mesh.positions[v]); };
   for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
     const auto& [a, b, c] = mesh.faces[t];
-    const measure::RestTriangle rest =
-        laid_flat(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+    const measure::RestTriangle rest = laid_flat(at(a), at(b), at(c));
     if (rest.area > 0)
       visit(t, rest.area,
             measure::jacobian(rest, measure::uv_edges(unwrapped.faces[t], unwrapped.uv)));
@@ -47,7 +48,7 @@ double common_scale(std::span<const Surface> surfaces,
                     std::span<const UnwrappedSurface> unwrapped) {
   double area = 0, uv_area = 0;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    for_each_face(surfaces[s].mesh, unwrapped[s],
+    for_each_face(surfaces[s], unwrapped[s],
                   [&](std::size_t, double a, const measure::Jacobian& j) {
                     area += a;
                     uv_area += a * std::abs(j.determinant());
@@ -101,7 +102,7 @@ std::vector<std::vector<std::uint8_t>> painted_faces(std::span<const Surface> su
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     painted[s].assign(surfaces[s].mesh.faces.size(), kHiddenFace);
     for_each_face(
-        surfaces[s].mesh, unwrapped[s], [&](std::size_t t, double, const measure::Jacobian& j) {
+        surfaces[s], unwrapped[s], [&](std::size_t t, double, const measure::Jacobian& j) {
           painted[s][t] = j.sigma_min() > 0 ? colours.colour_of(shown_value(colouring, j, scale))
                                             : kFlippedFace;
         });

@@ -15,9 +15,9 @@ namespace unwrapd::figure {
 /// A square picture of `size` pixels, in [kMinImageSize, kMaxImageSize], on white. Squares of the
 /// checkerboard have one size on the page, chosen so that about kChecksAcross of them cross the
 /// surface; seams are drawn pink and boundaries of the surface dark, both where they can be seen.
-/// Surfaces lie where their own coordinates put them. unwrapped has one entry for each. aspect:
-/// from where they are seen; none: aslant, so that much is seen. Throws Error{cancelled} once a
-/// stop was requested.
+/// Surfaces lie where their own coordinates put them (see in_scene()). unwrapped has one entry for
+/// each. aspect: from where they are seen; none: aslant, so that much is seen. Throws
+/// Error{cancelled} once a stop was requested.
 Image preview(std::span<const Surface> surfaces, std::span<const UnwrappedSurface> unwrapped,
               int size, const std::optional<Aspect>& aspect = {}, const std::stop_token& stop = {});
 

@@ -1,7 +1,9 @@
 #pragma once
-// Where a scene shows a mesh.
+// Where a scene shows its meshes.
 
 #include <Eigen/Core>
+
+#include <cstddef>
 
 #include "core/mesh/tri_mesh.hpp"
 
@@ -13,6 +15,12 @@ struct Placement {
   Vec3 origin = Vec3::Zero();
 
   Vec3 operator()(const Vec3& position) const { return linear * position + origin; }
+};
+
+/// A surface, by its number, and one of its places.
+struct ShownSurface {
+  std::size_t surface = 0;
+  Placement placement;
 };
 
 /// First b, then a.

@@ -10,12 +10,12 @@
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kTolerance = 1e-3;  // of energy: what solving on gains is within the margin
+constexpr double kWholeTolerance = 1e-3;  // of energy: what solving on gains is within the margin
 constexpr int kMostIterations = 100;
 
 UvMap arap_map(const solve::Disk& disk, Executor& executor, const std::stop_token& stop) {
   UnwrapOptions options;
-  options.stop.tolerance = kTolerance;
+  options.stop.tolerance = kWholeTolerance;
   options.stop.max_iterations = kMostIterations;
   solve::Solver solver(disk, options, {}, executor);
   solve::SolveWatch watch;

@@ -10,6 +10,7 @@
 #include "api/report.hpp"
 #include "api/result.hpp"
 #include "core/base/shared_cache.hpp"
+#include "core/figure/in_scene.hpp"
 #include "core/figure/layout_image.hpp"
 #include "core/figure/layout_svg.hpp"
 #include "core/figure/preview.hpp"
@@ -116,7 +117,13 @@ std::string draw_layout(const Picture& picture, const asset::Asset& asset,
 std::string draw_preview(const Picture& picture, const asset::Asset& asset, const Pages& pages,
                          Surfaces unwrapped, const std::stop_token& stop) {
   bring_to_page(sides_of(pages.size), 0, unwrapped);
-  const auto& surfaces = asset.surfaces();
+  std::span<const Surface> surfaces = asset.surfaces();
+  figure::Scene scene;
+  if (const auto shown = asset::shown_surfaces(asset); !shown.empty()) {
+    scene = figure::in_scene(surfaces, unwrapped, shown);
+    surfaces = scene.surfaces;
+    unwrapped = std::move(scene.unwrapped);
+  }
   return encode_png(picture.turns
                         ? figure::turntable(surfaces, unwrapped, picture.size, stop)
                         : figure::preview(surfaces, unwrapped, picture.size, picture.aspect, stop));

@@ -79,6 +79,12 @@ struct Piece {
   std::size_t face_count = 0;
 };
 
+/// A node that shows a mesh.
+struct MeshNode {
+  std::size_t mesh = 0;
+  Placement placement;
+};
+
 /// How textures are transferred.
 struct Transfer {
   PageSize page;                         ///< the least size of a new texture
@@ -103,8 +109,8 @@ struct Gltf {
   std::string other_chunks;                        ///< of a GLB, as they came, after JSON and BIN
   std::vector<View> views;
   std::vector<Accessor> accessors;
-  std::vector<Primitive> primitives;               ///< of all meshes, in order
-  std::vector<std::vector<Placement>> placements;  ///< [mesh]: where nodes show it
+  std::vector<Primitive> primitives;  ///< of all meshes, in order
+  std::vector<MeshNode> mesh_nodes;   ///< of the scene, in order
   std::vector<Piece> pieces;
   std::vector<std::vector<Index>> vertices;  ///< [surface][vertex]: its number in the accessor
   std::size_t pool_count = 0;

@@ -12,11 +12,13 @@
 namespace unwrapd::asset {
 namespace {
 
-constexpr std::array<std::string_view, 15> kRead = {
+constexpr std::array<std::string_view, 16> kRead = {
     "asset",     "extensionsUsed", "extensionsRequired", "buffers", "bufferViews",
     "accessors", "meshes",         "materials",          "images",  "textures",
-    "samplers",  "skins",          "animations",         "nodes",   "scenes"};
-constexpr std::array<std::string_view, 2> kUnwritten = {"nodes", "scenes"};  // subset of these
+    "samplers",  "skins",          "animations",         "nodes",   "scene",
+    "scenes"};
+constexpr std::array<std::string_view, 3> kUnwritten = {"nodes", "scene",
+                                                        "scenes"};  // subset of these
 
 /// Writes a text in pieces, and checks the stop at each.
 class WatchedSink final : public std::streambuf {

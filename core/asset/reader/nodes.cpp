@@ -157,6 +157,35 @@ std::vector<Placement> world_placements(const Json& nodes, const Children& child
   return world;
 }
 
+/// One a node: whether the scene that viewers show has it.
+std::vector<char> in_default_scene(const Gltf& gltf, const Children& children,
+                                   const std::vector<std::size_t>& order) {
+  std::vector<char> is_in(order.size());
+  const auto number = gltf.json.find("scene");
+  const bool is_named = number != gltf.json.end() && number->is_number_unsigned();
+  const std::size_t scene = is_named ? number->get<std::size_t>() : 0;
+  if (scene >= list_size(gltf, "scenes")) return is_in;
+  const auto roots = Node(gltf.json).at("scenes").at(scene).find("nodes");
+  for (std::size_t k = 0; roots && k < roots->array_size(); ++k) is_in[roots->at(k).number()] = 1;
+  for (const std::size_t i : order)
+    if (is_in[i] != 0) children.for_each(i, [&](std::size_t child) { is_in[child] = 1; });
+  return is_in;
+}
+
+std::vector<MeshNode> mesh_nodes(const Gltf& gltf, const std::vector<Placement>& world,
+                                 const std::vector<char>& is_shown) {
+  std::vector<MeshNode> shown;
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    const Json& node = gltf.json.at("nodes").at(i);
+    const auto mesh = node.find("mesh");
+    if (mesh == node.end() || is_shown[i] == 0) continue;
+    const Placement placement = placement_by_skin(gltf, node, world).value_or(world[i]);
+    if (placement.linear.allFinite() && placement.origin.allFinite())
+      shown.push_back({mesh->get<std::size_t>(), placement});
+  }
+  return shown;
+}
+
 }  // namespace
 
 void read_nodes(Gltf& gltf) {
@@ -166,17 +195,11 @@ void read_nodes(Gltf& gltf) {
   const auto shared = std::ranges::count_if(children.parent_counts,
                                             [](std::size_t parents) { return parents > 1; });
   if (shared > 0) gltf.repairs.push_back({FileRepairKind::shared_nodes_kept, shared});
-  gltf.placements.resize(list_size(gltf, "meshes"));
   if (order.empty()) return;
-  const Json& nodes = gltf.json.at("nodes");
-  const std::vector<Placement> world = world_placements(nodes, children, order);
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    const auto mesh = nodes.at(i).find("mesh");
-    if (mesh == nodes.at(i).end()) continue;
-    const Placement placement = placement_by_skin(gltf, nodes.at(i), world).value_or(world[i]);
-    if (placement.linear.allFinite() && placement.origin.allFinite())
-      gltf.placements[mesh->get<std::size_t>()].push_back(placement);
-  }
+  const std::vector<Placement> world = world_placements(gltf.json.at("nodes"), children, order);
+  gltf.mesh_nodes = mesh_nodes(gltf, world, in_default_scene(gltf, children, order));
+  if (gltf.mesh_nodes.empty())
+    gltf.mesh_nodes = mesh_nodes(gltf, world, std::vector<char>(order.size(), 1));
 }
 
 }  // namespace unwrapd::asset::reader

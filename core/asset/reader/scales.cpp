@@ -34,15 +34,16 @@ Eigen::Matrix3d cofactors(const Eigen::Matrix3d& m) {
   return cofactor;
 }
 
-/// The cofactors of the placement that shows a mesh largest. Of one mesh there are few, so that
-/// many nodes of a mesh with many surfaces do not multiply.
-std::optional<Eigen::Matrix3d> largest(const std::vector<Placement>& placements) {
-  std::optional<Eigen::Matrix3d> greatest;
-  for (const Placement& placement : placements) {
-    const Eigen::Matrix3d own = cofactors(placement.linear);
+/// The cofactors of the placement that shows a mesh largest. One a mesh, so that its nodes and its
+/// surfaces do not multiply.
+std::vector<std::optional<Eigen::Matrix3d>> largest_of_meshes(const Gltf& gltf) {
+  std::vector<std::optional<Eigen::Matrix3d>> largest(list_size(gltf, "meshes"));
+  for (const MeshNode& node : gltf.mesh_nodes) {
+    const Eigen::Matrix3d own = cofactors(node.placement.linear);
+    std::optional<Eigen::Matrix3d>& greatest = largest[node.mesh];
     if (!greatest || own.squaredNorm() > greatest->squaredNorm()) greatest = own;
   }
-  return greatest;
+  return largest;
 }
 
 /// The root of how many times its area the mesh has in the scene: of the root mean square over its
@@ -69,9 +70,7 @@ std::vector<std::vector<std::size_t>> meshes_of_surfaces(const Gltf& gltf, std::
 
 void set_scales(const Gltf& gltf, std::vector<Surface>& surfaces) {
   const auto meshes = meshes_of_surfaces(gltf, surfaces.size());
-  std::vector<std::optional<Eigen::Matrix3d>> shown;
-  for (const std::vector<Placement>& placements : gltf.placements)
-    shown.push_back(largest(placements));
+  const auto shown = largest_of_meshes(gltf);
   std::vector<std::optional<double>> scales(surfaces.size());
   std::optional<double> least;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {

@@ -29,7 +29,8 @@ void read_accessors(Gltf& gltf);
 
 std::vector<codec::DracoSource> read_meshes(Gltf& gltf);
 
-/// Checks the graph of nodes: references, no cycle. Fills placements.
+/// Checks the graph of nodes: references, no cycle. Fills mesh_nodes with those of the default
+/// scene, or with all where it shows no mesh.
 void read_nodes(Gltf& gltf);
 
 /// Checks types and counts of the data of triangles, and the limits.
@@ -46,7 +47,7 @@ void choose_texcoord(Gltf& gltf, const std::variant<int, TexcoordChoice>& asked)
 /// One surface for each mesh that has triangles of its own; fills pieces, vertices and pools.
 std::vector<Surface> build_surfaces(Gltf& gltf, const ReadLimits& limits);
 
-/// Fills Surface::scale from the placements.
+/// Fills Surface::scale from the nodes.
 void set_scales(const Gltf& gltf, std::vector<Surface>& surfaces);
 
 /// Fills corner_uv from the attribute gltf.uvs_from, on the surfaces that have it.

@@ -35,7 +35,7 @@ function figuresOf(report: Report): [string, string, string][] {
     ['Overlapping pairs', overlapsIn(report), ''],
     ['Seams', fixed(seams, 2), 'length / √area'],
     ['Page filled', `${(100 * fill).toFixed(1)} %`, pages > 1 ? count(pages, 'page') : ''],
-    ['Texels per unit', fixed(density, 1), 'of the mesh’s length'],
+    ['Texels per unit', fixed(density, 1), 'of length'],
     ['Time', `${(timings.total / 1000).toFixed(2)} s`, 'on the server'],
   ];
 }

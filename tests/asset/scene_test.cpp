@@ -1,4 +1,4 @@
-// How large a scene shows its meshes, read from nodes, matrices and skins.
+// How large and where a scene shows its meshes, read from nodes, matrices and skins.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,6 +19,7 @@ Builder two_meshes(const std::string& nodes) {
     b.json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", corners}}}}}}});
   }
   b.json["nodes"] = Json::parse(nodes);
+  b.json.erase("scenes"), b.json.erase("scene");
   return b;
 }
 
@@ -99,7 +100,8 @@ TEST(Scales, OfSkinnedMeshesAreThoseOfTheirJoints) {
 TEST(Scales, ReachMeshesOfTheSameGeometry) {
   Builder b = square();
   b.json["meshes"].push_back(b.json["meshes"][0]);
-  b.json["nodes"] = Json::parse(R"([{"mesh": 0}, {"mesh": 1, "scale": [3, 3, 3]}])");
+  b.json["nodes"] =
+      Json::parse(R"([{"mesh": 0, "children": [1]}, {"mesh": 1, "scale": [3, 3, 3]}])");
   EXPECT_EQ(scales_of(b), std::vector<double>{3});
 }
 
@@ -114,11 +116,56 @@ TEST(Scales, AreReadAtOnceHoweverManyNodesShowManySurfaces) {
   for (int i = 1; i <= 2'000; ++i) all.push_back(b.json["meshes"][std::size_t(i)]["primitives"][0]);
   b.json["meshes"].push_back({{"primitives", all}});
   b.json["nodes"] = Json::array();
+  b.json.erase("scenes");
   for (int i = 0; i < 50'000; ++i)
     b.json["nodes"].push_back({{"mesh", 2'001}, {"scale", {i / 1e4, i / 1e4, i / 1e4}}});
   const std::vector<double> scales = scales_of(b);
   EXPECT_EQ(scales.size(), 2'001U);
   EXPECT_NEAR(scales.back(), 4.9999, 1e-9);
+}
+
+TEST(Scales, CountInTheDefaultSceneOnlyUnlessItShowsNothing) {
+  Builder b = two_meshes(R"([{"mesh": 0}, {"mesh": 1}, {"mesh": 1, "scale": [9, 9, 9]}, {}])");
+  b.json["scenes"] = Json::parse(R"([{"nodes": [3]}, {"nodes": [0, 1]}, {"nodes": [2]}])");
+  b.json["scene"] = 1;
+  EXPECT_EQ(scales_of(b), (std::vector<double>{1, 1}));
+  b.json["scene"] = 2;
+  EXPECT_EQ(scales_of(b), (std::vector<double>{9, 9}));
+  b.json.erase("scene");
+  EXPECT_EQ(scales_of(b), (std::vector<double>{1, 9}));
+}
+
+/// The surfaces in the order in which the scene shows them, and where their origins are along x.
+std::vector<std::pair<std::size_t, double>> shown_in(const Builder& b) {
+  const Asset asset = read_file(b.glb());
+  std::vector<std::pair<std::size_t, double>> shown;
+  for (const auto& [surface, placement] : shown_surfaces(asset))
+    shown.emplace_back(surface, placement.origin.x());
+  return shown;
+}
+
+using Shown = std::vector<std::pair<std::size_t, double>>;
+
+TEST(ShownSurfaces, AreThoseOfTheNodes) {
+  EXPECT_EQ(shown_in(two_meshes(R"([{"mesh": 1, "translation": [5, 0, 0], "children": [1]},
+                                    {"mesh": 0, "translation": [2, 0, 0]}, {"mesh": 1}])")),
+            (Shown{{1, 5}, {0, 7}, {1, 0}}));
+  EXPECT_EQ(shown_in(two_meshes(R"([{"mesh": 0}])")), (Shown{{0, 0}}));
+}
+
+TEST(ShownSurfaces, AreNoneWhereTheyLieAsTheyAre) {
+  EXPECT_EQ(shown_in(two_meshes(R"([{"mesh": 0}, {"mesh": 1}])")), Shown{});
+  EXPECT_EQ(shown_in(two_meshes("[]")), Shown{});
+  EXPECT_TRUE(shown_surfaces(read_file("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")).empty());
+}
+
+TEST(ShownSurfaces, AreShownOnceEachWhereNodesAreTooMany) {
+  Builder b = two_meshes("[]");
+  for (std::size_t i = 0; i <= kMostShownFaces; ++i)
+    b.json["nodes"].push_back({{"mesh", i % 2}, {"translation", {i, 0, 0}}});
+  EXPECT_EQ(shown_in(b), (Shown{{0, 0}, {1, 1}}));
+  b.json["nodes"].erase(0);
+  EXPECT_EQ(shown_in(b).size(), kMostShownFaces);
 }
 
 }  // namespace
