@@ -256,9 +256,9 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   }
   if (const mesh_files::MeshFile* file = std::get_if<mesh_files::MeshFile>(&document.source))
     more = mesh_files::note_on_mesh_file(*file, document.format);
-  if (const Gltf* gltf = std::get_if<Gltf>(&document.source);
-      gltf != nullptr && output != Format::obj)
-    more = writer::side_effects_of_patch(*gltf, unwrapped, output);
+  if (const Gltf* gltf = std::get_if<Gltf>(&document.source))
+    more = output == Format::obj ? convert::notes_on_obj_of_gltf(*gltf)
+                                 : writer::side_effects_of_patch(*gltf, unwrapped, output);
   notes.insert(notes.end(), more.begin(), more.end());
   return notes;
 }

@@ -1,7 +1,5 @@
 #include "core/figure/in_scene.hpp"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <utility>
 
@@ -27,7 +25,7 @@ Scene in_scene(std::span<const Surface> surfaces, std::span<const UnwrappedSurfa
     if (!std::ranges::all_of(mesh.positions, [](const Vec3& p) { return p.allFinite(); })) continue;
     scene.surfaces.emplace_back().mesh = std::move(mesh);
     scene.unwrapped.push_back(unwrapped[s]);
-    if (placement.linear.determinant() >= 0) continue;
+    if (!placement.mirrors()) continue;
     turn_winding(scene.surfaces.back().mesh.faces);
     turn_winding(scene.unwrapped.back().faces);
   }

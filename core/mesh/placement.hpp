@@ -1,7 +1,8 @@
 #pragma once
 // Where a scene shows its meshes.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <cstddef>
 
@@ -15,6 +16,17 @@ struct Placement {
   Vec3 origin = Vec3::Zero();
 
   Vec3 operator()(const Vec3& position) const { return linear * position + origin; }
+
+  /// The cofactors of `linear`: they map the normal of an area, as long as the area, to that of its
+  /// image.
+  [[nodiscard]] Eigen::Matrix3d cofactors() const {
+    Eigen::Matrix3d cofactor;
+    for (int k = 0; k < 3; ++k)
+      cofactor.row(k) = linear.row((k + 1) % 3).cross(linear.row((k + 2) % 3));
+    return cofactor;
+  }
+
+  [[nodiscard]] bool mirrors() const { return linear.determinant() < 0; }
 };
 
 /// A surface, by its number, and one of its places.

@@ -4,10 +4,12 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/asset/gltf/gltf.hpp"
 #include "core/asset/mesh_files/mesh_file.hpp"
 #include "core/asset/obj/obj.hpp"
+#include "core/types/note.hpp"
 
 namespace unwrapd::asset::convert {
 
@@ -31,8 +33,11 @@ std::vector<Index> sources_in_gltf(const mesh_files::MeshFile& file, const Surfa
 std::string mesh_file_as_obj(const mesh_files::MeshFile& file, const Surface& surface,
                              const UnwrappedSurface& unwrapped);
 
-/// One object ("o") for each mesh, in the mesh's own space.
+/// One object ("o") for each mesh, where the first node of the scene shows it.
 std::string gltf_as_obj(const Gltf& gltf, std::span<const Surface> surfaces,
                         std::span<const UnwrappedSurface> unwrapped);
+
+/// What that OBJ lacks of the glTF.
+std::vector<Note> notes_on_obj_of_gltf(const Gltf& gltf);
 
 }  // namespace unwrapd::asset::convert

@@ -1,7 +1,5 @@
 // How large a scene shows its meshes. The page has texels for what is seen: a mesh of one unit that
 // a node makes ten times as large gets ten times the texels along its sides.
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -27,19 +25,12 @@ Eigen::Matrix3d areas_by_direction(const TriMesh& mesh) {
   return sum;
 }
 
-/// The cofactors of a matrix map the normal of an area, as long as the area, to that of its image.
-Eigen::Matrix3d cofactors(const Eigen::Matrix3d& m) {
-  Eigen::Matrix3d cofactor;
-  for (int k = 0; k < 3; ++k) cofactor.row(k) = m.row((k + 1) % 3).cross(m.row((k + 2) % 3));
-  return cofactor;
-}
-
 /// The cofactors of the placement that shows a mesh largest. One a mesh, so that its nodes and its
 /// surfaces do not multiply.
 std::vector<std::optional<Eigen::Matrix3d>> largest_of_meshes(const Gltf& gltf) {
   std::vector<std::optional<Eigen::Matrix3d>> largest(list_size(gltf, "meshes"));
   for (const MeshNode& node : gltf.mesh_nodes) {
-    const Eigen::Matrix3d own = cofactors(node.placement.linear);
+    const Eigen::Matrix3d own = node.placement.cofactors();
     std::optional<Eigen::Matrix3d>& greatest = largest[node.mesh];
     if (!greatest || own.squaredNorm() > greatest->squaredNorm()) greatest = own;
   }

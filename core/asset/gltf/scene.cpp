@@ -1,0 +1,55 @@
+// A surface with the geometry of several meshes is shown where all of them are.
+#include "core/asset/gltf/scene.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace unwrapd::asset {
+namespace {
+
+/// surfaces[mesh]: those with faces of the mesh, ascending.
+std::vector<std::set<std::size_t>> surfaces_of_meshes(const Gltf& gltf) {
+  std::vector<std::set<std::size_t>> surfaces;
+  for (const Primitive& primitive : gltf.primitives) {
+    surfaces.resize(std::max(surfaces.size(), primitive.mesh + 1));
+    if (primitive.has_triangles)
+      surfaces[primitive.mesh].insert(gltf.pieces[primitive.piece].surface);
+  }
+  return surfaces;
+}
+
+}  // namespace
+
+std::vector<ShownSurface> shown_by_nodes(const Gltf& gltf, std::span<const Surface> surfaces,
+                                         std::size_t most) {
+  const auto of_mesh = surfaces_of_meshes(gltf);
+  std::vector<ShownSurface> all, once;
+  std::vector<char> is_mesh_shown(of_mesh.size()), is_shown(surfaces.size());
+  std::size_t faces = 0;
+  for (const auto& [mesh, placement] : gltf.mesh_nodes) {
+    if (mesh >= of_mesh.size()) continue;
+    if (std::exchange(is_mesh_shown[mesh], 1) != 0 && faces > most) continue;
+    for (const std::size_t s : of_mesh[mesh]) {
+      if (std::exchange(is_shown[s], 1) == 0) once.push_back({s, placement});
+      if (faces <= most) all.push_back({s, placement});
+      faces += surfaces[s].mesh.faces.size();
+    }
+  }
+  return faces > most ? once : all;
+}
+
+std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surface> surfaces) {
+  std::vector<Placement> placements(surfaces.size());
+  for (const auto& [surface, placement] : shown_by_nodes(gltf, surfaces, 0))
+    placements[surface] = placement;
+  return placements;
+}
+
+std::size_t repeated_nodes(const Gltf& gltf) {
+  std::set<std::size_t> meshes;
+  for (const MeshNode& node : gltf.mesh_nodes) meshes.insert(node.mesh);
+  return gltf.mesh_nodes.size() - meshes.size();
+}
+
+}  // namespace unwrapd::asset

@@ -1,0 +1,24 @@
+#pragma once
+// What the scene of a document shows.
+
+#include <span>
+#include <vector>
+
+#include "core/asset/gltf/gltf.hpp"
+#include "core/mesh/placement.hpp"
+#include "core/mesh/tri_mesh.hpp"
+
+namespace unwrapd::asset {
+
+/// In the order of nodes: each surface by every node while that makes no more faces than `most`,
+/// else by the first. One that no node shows is left out.
+std::vector<ShownSurface> shown_by_nodes(const Gltf& gltf, std::span<const Surface> surfaces,
+                                         std::size_t most);
+
+/// One a surface: where the first node shows it; as it is, where none does.
+std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surface> surfaces);
+
+/// How many nodes show a mesh again.
+std::size_t repeated_nodes(const Gltf& gltf);
+
+}  // namespace unwrapd::asset
