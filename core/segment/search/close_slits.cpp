@@ -1,6 +1,7 @@
 // A union that fails is glued along one stretch of its border and slit along the rest (join.hpp).
 // That is decided once, while the region is still small; what it became may lie flat without. How
 // far a slit can be glued is found by bisection: the more of it is glued, the more the map is bent.
+// What is bent for little stays open: at the corners of a thin box, the sides would be sheared.
 #include "core/segment/search/close_slits.hpp"
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 
 namespace unwrapd::segment::search {
 namespace {
+
+constexpr double kLeastGain = 6;  // of length, for the excess that it costs (ADR 0083)
 
 class Gluing {
  public:
@@ -46,7 +49,13 @@ class Gluing {
  private:
   [[nodiscard]] Index twin(Index h) const { return surface_.halfedges.twin[h]; }
 
-  /// Whether the region keeps a sound map with these glued; then they are.
+  [[nodiscard]] double seam_of(std::span<const Index> edges) const {
+    double seam = 0;
+    for (const Index h : edges) seam += surface_.seam_cost[h];
+    return seam;
+  }
+
+  /// Whether the region keeps a sound map with these glued, and they are worth it; then they are.
   bool glue(std::span<const Index> edges) {
     MappedRegion& old = partition_.regions[seams_.owner(edges.front())];
     const auto set_open = [&](char is_open) {
@@ -54,10 +63,13 @@ class Gluing {
     };
     set_open(0);
     MappedRegion now = old;
-    if (!remap(context_, settings_, partition_.open, old.excess, now, total_)) {
+    ExcessDistortion total = total_;
+    if (!remap(context_, settings_, partition_.open, old.excess, now, total) ||
+        seam_of(edges) < kLeastGain * (now.excess - old.excess).worst()) {
       set_open(1);
       return false;
     }
+    total_ = total;
     old = std::move(now);
     return true;
   }

@@ -8,7 +8,8 @@
 //
 // The flatness is tightened until the regions use only their part of the distortion. A region
 // without a sound map (a tube, a fold) is clustered again, ever more tightly. This ends because a
-// single triangle always has a sound map.
+// single triangle always has a sound map. Flat regions at a sharp edge stay apart however small one
+// of them is, since only merging finds along which edges a box unfolds best (ADR 0083).
 #include "core/segment/search/over_segment.hpp"
 
 #include <algorithm>
@@ -39,6 +40,7 @@ constexpr double kSmoothCosine = 0.9;  // smoothing of borders does not reach ar
 constexpr double kShareOfWork = 0.1, kFacesOfStart = 6;  // of the work; for each face
 constexpr std::size_t kRegionsAtOnce = 16;               // then progress is told
 constexpr double kBaseCost = 2e-3;  // of an area, so that flat neighbours merge small ones first
+constexpr double kPlane = 1 - 1e-6, kSharpCosine = 0.5;  // of flat regions that stay apart
 constexpr int kStepsBetweenLooks = 256;
 
 struct Cluster {
@@ -97,13 +99,20 @@ class Clustering {
     const Cluster &x = clusters_[a], &y = clusters_[b];
     const double length = x.borders.at(b), area = x.area + y.area;
     const double together = (x.normal_sum + y.normal_sum).norm();
-    if (area - together > flatness_ * area) return;
+    if (area - together > flatness_ * area || meet_sharply(x, y)) return;
     const double variation = x.normal_sum.norm() + y.normal_sum.norm() - together;
     const double perimeter = x.perimeter + y.perimeter - 2 * length;
     const double roundness = perimeter * perimeter / (4 * std::numbers::pi * area);
     const double cost = (variation + kBaseCost * std::min(x.area, y.area)) *
                         std::sqrt(std::max(roundness, 1.0)) / length;
     queue_.emplace(rounded(cost), a, b, x.version, y.version);
+  }
+
+  /// Whether both are flat, and the angle between them is sharp.
+  static bool meet_sharply(const Cluster& x, const Cluster& y) {
+    const double a = x.normal_sum.norm(), b = y.normal_sum.norm();
+    return a >= kPlane * x.area && b >= kPlane * y.area &&
+           x.normal_sum.dot(y.normal_sum) < kSharpCosine * a * b;
   }
 
   /// b becomes part of a, or a of b where b has more neighbours.
