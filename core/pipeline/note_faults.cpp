@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "core/measure/page_area.hpp"
 #include "core/types/chart_rules.hpp"
 
 namespace unwrapd::pipeline {
@@ -122,12 +123,29 @@ void note_absent_uvs(Layout& layout, std::span<const Surface> surfaces,
        "those of seams=auto."});
 }
 
+/// Islands whose colours no texel of their own can hold.
+void note_tiny_islands(Layout& layout) {
+  const PageSize& page = layout.report.page;
+  const double texel = 1.0 / (static_cast<double>(page.width) * page.height);
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < layout.islands.size(); ++s)
+    for (std::size_t k = 0; k < layout.islands[s].size(); ++k)
+      count += measure::page_area(layout.charts[s][k]->mesh.faces, layout.islands[s][k]) < texel;
+  if (count == 0) return;
+  layout.report.notes.push_back(
+      {NoteCode::islands_tiny,
+       std::to_string(count) + " of " + std::to_string(layout.report.charts.size()) +
+           " islands have less area than one texel of the page, so small are they beside the "
+           "others. Send a higher resolution, or unwrap small and large parts apart."});
+}
+
 }  // namespace
 
 void note_faults(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options) {
   note_absent_uvs(layout, surfaces, options);
   note_distortion(layout, surfaces, options);
   note_overlaps(layout, surfaces);
+  note_tiny_islands(layout);
 }
 
 }  // namespace unwrapd::pipeline

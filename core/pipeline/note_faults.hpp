@@ -11,8 +11,8 @@ namespace unwrapd::pipeline {
 inline constexpr double kBearableDistortion = 2.1;
 
 /// Notes a mean distortion beyond options.max_distortion, charts distorted beyond both that and
-/// kBearableDistortion, and charts whose triangles overlap; and seams at UVs where there
-/// are none. Requires the figures of measure_maps().
+/// kBearableDistortion, charts whose triangles overlap, and islands smaller than a texel; and seams
+/// at UVs where there are none. Requires the figures of measure_maps().
 void note_faults(Layout& layout, std::span<const Surface> surfaces, const UnwrapOptions& options);
 
 }  // namespace unwrapd::pipeline

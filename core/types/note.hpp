@@ -33,6 +33,7 @@ enum class NoteCode {
   origin_moved,          ///< positions are relative to the translation of the node
   lambda_repeated,       ///< charts have maps that come from those of another lambda of the list
   kept_edges_cut,        ///< seams run along edges of keep_edges nevertheless
+  islands_tiny,          ///< islands have less area than one texel
 };
 
 struct Note {

@@ -10,7 +10,7 @@
 namespace unwrapd::asset::reader {
 namespace {
 
-/// Of nodes that show a mesh smaller or larger, a scale is an error or hides the mesh.
+/// A node that shows a mesh smaller or larger hides it, or is wrong.
 constexpr double kLeastScale = 1e-12, kGreatestScale = 1e12;
 constexpr double kRounding = 1e-5;  ///< of scales by products of floats
 
@@ -41,7 +41,7 @@ std::vector<std::optional<Eigen::Matrix3d>> largest_of_meshes(const Gltf& gltf) 
 /// faces, which is exact for one scale in all directions, and for a plane.
 std::optional<double> scale_of(const Eigen::Matrix3d& cofactor, const Eigen::Matrix3d& areas) {
   const double ratio = (cofactor * areas * cofactor.transpose()).trace() / areas.trace();
-  const double scale = std::pow(ratio, 0.25);
+  const double scale = std::sqrt(std::sqrt(ratio));
   if (!(scale >= kLeastScale && scale <= kGreatestScale)) return std::nullopt;
   return std::abs(scale - 1) <= kRounding ? 1 : scale;
 }

@@ -60,6 +60,20 @@ TEST(NoteFaults, TellAPaddingThatIsReduced) {
   EXPECT_EQ(notes[0]->text.find(".000"), std::string::npos) << notes[0]->text;
 }
 
+/// A square beside one of this side.
+TEST(NoteFaults, TellIslandsSmallerThanATexel) {
+  for (const double side : {0.1, 0.0005}) {
+    TriMesh small = shapes::grid(1, 1);
+    for (Vec3& p : small.positions) p = side * p + Vec3(5, 0, 0);
+    const std::array both{shapes::grid(4, 4), small};
+    const Unwrapped two = unwrapped_surface(shapes::surface_of(shapes::merged(both)), {});
+    const auto notes = notes_of(two, NoteCode::islands_tiny);
+    ASSERT_EQ(notes.size(), side < 0.001 ? 1U : 0U) << side;
+    if (notes.empty()) continue;
+    EXPECT_EQ(notes[0]->text.find("1 of 2 islands"), 0U) << notes[0]->text;
+  }
+}
+
 TEST(NoteFaults, TellSeamsAtUvsThatThereAreNot) {
   Surface surface = shapes::surface_of(shapes::grid(2, 2));
   const auto told = [&](SeamMode seams) {
