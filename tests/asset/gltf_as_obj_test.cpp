@@ -85,6 +85,9 @@ TEST(GltfAsObj, SaysWhatIsLacking) {
   Builder twice = square();
   twice.json["nodes"] = Json::parse(R"([{"mesh": 0, "children": [1]}, {"mesh": 0}])");
   EXPECT_THAT(notes_on(twice), testing::ElementsAre(testing::HasSubstr("again: 1.")));
+  twice.json["meshes"].push_back(twice.json["meshes"][0]);  // the same geometry
+  twice.json["nodes"][1]["mesh"] = 1;
+  EXPECT_THAT(notes_on(twice), testing::ElementsAre(testing::HasSubstr("again: 1.")));
 }
 
 }  // namespace

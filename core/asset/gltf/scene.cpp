@@ -47,9 +47,17 @@ std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surfac
 }
 
 std::size_t repeated_nodes(const Gltf& gltf) {
-  std::set<std::size_t> meshes;
-  for (const MeshNode& node : gltf.mesh_nodes) meshes.insert(node.mesh);
-  return gltf.mesh_nodes.size() - meshes.size();
+  const auto of_mesh = surfaces_of_meshes(gltf);
+  std::set<std::size_t> meshes, surfaces;
+  std::size_t repeated = 0;
+  for (const MeshNode& node : gltf.mesh_nodes) {
+    if (node.mesh >= of_mesh.size() || of_mesh[node.mesh].empty()) continue;
+    bool is_new = false;
+    if (meshes.insert(node.mesh).second)
+      for (const std::size_t s : of_mesh[node.mesh]) is_new |= surfaces.insert(s).second;
+    repeated += is_new ? 0 : 1;
+  }
+  return repeated;
 }
 
 }  // namespace unwrapd::asset

@@ -18,7 +18,7 @@ std::vector<ShownSurface> shown_by_nodes(const Gltf& gltf, std::span<const Surfa
 /// One a surface: where the first node shows it; as it is, where none does.
 std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surface> surfaces);
 
-/// How many nodes show a mesh again.
+/// How many nodes show nothing but surfaces that nodes before them show.
 std::size_t repeated_nodes(const Gltf& gltf);
 
 }  // namespace unwrapd::asset
