@@ -153,6 +153,22 @@ TEST(ShownSurfaces, AreThoseOfTheNodes) {
   EXPECT_EQ(shown_in(two_meshes(R"([{"mesh": 0}])")), (Shown{{0, 0}}));
 }
 
+TEST(ShownSurfaces, AreNotThoseOfNodesThatHideThem) {
+  for (const char* hidden :
+       {R"("scale": [0, 0, 0])", R"("scale": [1e-13, 1e-13, 1e-13])", R"("scale": [1e300, 1, 1])",
+        R"("translation": [1e31, 0, 0])", R"("translation": [1e308, 0, 0], "scale": [9, 9, 9])"}) {
+    const std::string node = std::string(R"({"mesh": 0, )") + hidden + "}";
+    EXPECT_EQ(shown_in(two_meshes("[" + node + R"(, {"mesh": 1, "translation": [2, 0, 0]}])")),
+              (Shown{{1, 2}}))
+        << hidden;
+    const Asset asset = read_file(two_meshes("[" + node + "]").glb());
+    EXPECT_EQ(
+        read_file(write(asset, split_nowhere(asset), Format::obj)).surfaces()[0].mesh.positions[1],
+        Vec3(1, 0, 0))
+        << hidden;
+  }
+}
+
 TEST(ShownSurfaces, AreNoneWhereTheyLieAsTheyAre) {
   EXPECT_EQ(shown_in(two_meshes(R"([{"mesh": 0}, {"mesh": 1}])")), Shown{});
   EXPECT_EQ(shown_in(two_meshes("[]")), Shown{});

@@ -103,15 +103,25 @@ function cornersOf(indices, mode) {
   return triples;
 }
 
-/** The same of a GLB or glTF with nothing compressed. */
+/** How large nodes show a mesh that they scale alike in all directions: the largest of all. */
+function scaleInScene({ nodes = [] }, mesh) {
+  const parent = new Map(nodes.flatMap(({ children = [] }, i) => children.map((child) => [child, i])));
+  const own = ({ matrix, scale = [1, 1, 1] }) => (matrix ? Math.hypot(...matrix.slice(0, 3)) : scale[0]);
+  const inScene = (i) => own(nodes[i]) * (parent.has(i) ? inScene(parent.get(i)) : 1);
+  const scales = nodes.flatMap((node, i) => (node.mesh === mesh && node.skin === undefined ? [inScene(i)] : []));
+  return Math.max(...scales.map(Math.abs).filter((scale) => scale > 0), 0) || 1;
+}
+
+/** The same of a GLB or glTF with nothing compressed, at the size at which nodes show it. */
 export function trianglesOfGltf(bytes, texcoord = 0) {
   const set = `TEXCOORD_${texcoord}`;
   const file = openGltf(bytes);
   const triangles = [];
-  for (const { primitives } of file.json.meshes)
+  for (const [mesh, { primitives }] of file.json.meshes.entries())
     for (const { attributes, indices, mode = 4 } of primitives) {
       if (mode < 4 || attributes[set] === undefined) continue;
-      const points = elements(file, attributes.POSITION);
+      const scale = scaleInScene(file.json, mesh);
+      const points = elements(file, attributes.POSITION).map((point) => point.map((x) => scale * x));
       const coordinates = elements(file, attributes[set]).map(([u, v]) => [u, 1 - v].map(inSteps));
       const inOrder = () => points.map((_, i) => i);
       const order = indices === undefined ? inOrder() : elements(file, indices).map(([i]) => i);

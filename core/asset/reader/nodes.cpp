@@ -11,6 +11,9 @@
 namespace unwrapd::asset::reader {
 namespace {
 
+constexpr double kLeastArea = 1e-24, kGreatestArea = 1e24;  ///< of a placement, times the mesh's
+constexpr double kFarthest = 1e30;                          ///< from the origin, see is_visible()
+
 /// The children of all nodes, one after another: those of node i begin at first[i].
 struct Children {
   std::vector<std::size_t> node;
@@ -172,6 +175,14 @@ std::vector<char> in_default_scene(const Gltf& gltf, const Children& children,
   return is_in;
 }
 
+/// Whether a mesh has area in this place, and fits into floats. Else its node hides it, or is
+/// wrong.
+bool is_visible(const Placement& placement) {
+  const double area = placement.cofactors().norm();  // times that of the mesh
+  return area >= kLeastArea && area <= kGreatestArea && placement.origin.allFinite() &&
+         placement.origin.cwiseAbs().maxCoeff() <= kFarthest;
+}
+
 std::vector<MeshNode> mesh_nodes(const Gltf& gltf, const std::vector<Placement>& world,
                                  const std::vector<char>& is_shown) {
   std::vector<MeshNode> shown;
@@ -180,8 +191,7 @@ std::vector<MeshNode> mesh_nodes(const Gltf& gltf, const std::vector<Placement>&
     const auto mesh = node.find("mesh");
     if (mesh == node.end() || is_shown[i] == 0) continue;
     const Placement placement = placement_by_skin(gltf, node, world).value_or(world[i]);
-    if (placement.linear.allFinite() && placement.origin.allFinite())
-      shown.push_back({mesh->get<std::size_t>(), placement});
+    if (is_visible(placement)) shown.push_back({mesh->get<std::size_t>(), placement});
   }
   return shown;
 }

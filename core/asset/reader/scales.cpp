@@ -10,9 +10,8 @@
 namespace unwrapd::asset::reader {
 namespace {
 
-/// A node that shows a mesh smaller or larger hides it, or is wrong.
-constexpr double kLeastScale = 1e-12, kGreatestScale = 1e12;
-constexpr double kRounding = 1e-5;  ///< of scales by products of floats
+constexpr double kLeastScale = 1e-12;  ///< of a flat mesh that a node shows from its edge, less
+constexpr double kRounding = 1e-5;     ///< of scales by products of floats
 
 /// The sum of A_t n n^T over the faces: how much area looks in which direction.
 Eigen::Matrix3d areas_by_direction(const TriMesh& mesh) {
@@ -42,7 +41,7 @@ std::vector<std::optional<Eigen::Matrix3d>> largest_of_meshes(const Gltf& gltf) 
 std::optional<double> scale_of(const Eigen::Matrix3d& cofactor, const Eigen::Matrix3d& areas) {
   const double ratio = (cofactor * areas * cofactor.transpose()).trace() / areas.trace();
   const double scale = std::sqrt(std::sqrt(ratio));
-  if (!(scale >= kLeastScale && scale <= kGreatestScale)) return std::nullopt;
+  if (!(scale >= kLeastScale)) return std::nullopt;
   return std::abs(scale - 1) <= kRounding ? 1 : scale;
 }
 
