@@ -6,21 +6,13 @@
 
 #include "core/figure/painting.hpp"
 #include "core/figure/preview.hpp"
+#include "tests/core/figure/laid_out.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::figure {
 namespace {
 
 using namespace shapes;
-
-UnwrappedSurface laid_out(const TriMesh& mesh) {
-  UnwrappedSurface out{mesh.faces, {}, {}};
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.source.push_back(v);
-    out.uv.emplace_back(0.1 * mesh.positions[v].head<2>());
-  }
-  return out;
-}
 
 /// Of a closed surface; positive if its faces' outer sides are outside.
 double volume(const TriMesh& mesh) {
@@ -36,7 +28,7 @@ Placement scaled(const Vec3& by, const Vec3& to = Vec3::Zero()) {
 
 TEST(InScene, OuterSidesStayOutsideWherePlacementsMirror) {
   const Surface box = surface_of(cube(1));
-  const UnwrappedSurface out = laid_out(box.mesh);
+  const UnwrappedSurface out = by_xy(box.mesh, 0.1);
   const std::vector<ShownSurface> shown = {{0, scaled({2, 3, 4}, {9, 9, 9})},
                                            {0, scaled({-2, 3, 4}, {9, 9, 9})},
                                            {0, scaled({-2, -3, 4})}};
@@ -51,7 +43,7 @@ TEST(InScene, OuterSidesStayOutsideWherePlacementsMirror) {
 TEST(InScene, LooksLikeTheMeshesPlacedByHand) {
   const Surface box = surface_of(cube(1)), sheet = surface_of(grid(2, 2));
   const std::vector<Surface> given = {box, sheet};
-  const std::vector<UnwrappedSurface> out = {laid_out(box.mesh), laid_out(sheet.mesh)};
+  const std::vector<UnwrappedSurface> out = {by_xy(box.mesh, 0.1), by_xy(sheet.mesh, 0.1)};
   const std::vector<ShownSurface> shown = {
       {1, scaled({4, 4, 4})}, {0, {}}, {0, scaled({1, 1, 1}, {2, 0, 1})}};
   TriMesh large = sheet.mesh;
@@ -66,7 +58,7 @@ TEST(InScene, LooksLikeTheMeshesPlacedByHand) {
 
 TEST(InScene, LeavesOutWhatLiesBeyondAllNumbers) {
   const Surface box = surface_of(cube(1));
-  const UnwrappedSurface out = laid_out(box.mesh);
+  const UnwrappedSurface out = by_xy(box.mesh, 0.1);
   const Vec3 far = Vec3::Constant(1.7e308);
   const std::vector<ShownSurface> shown = {{0, scaled(far, far)}, {0, {}}};
   EXPECT_EQ(in_scene({&box, 1}, {&out, 1}, shown).surfaces.size(), 1U);
@@ -75,7 +67,7 @@ TEST(InScene, LeavesOutWhatLiesBeyondAllNumbers) {
 TEST(PaintedFaces, CompareLengthsInTheScene) {
   const TriMesh mesh = grid(1, 1);
   std::vector<Surface> surfaces = {surface_of(mesh), surface_of(mesh)};
-  std::vector<UnwrappedSurface> out = {laid_out(mesh), laid_out(mesh)};
+  std::vector<UnwrappedSurface> out = {by_xy(mesh, 0.1), by_xy(mesh, 0.1)};
   for (Vec2& uv : out[1].uv) uv *= 8;
   const std::vector<std::uint8_t> even(2, 0);
   EXPECT_NE(painted_faces(surfaces, out, Colouring::stretch)[0], even);

@@ -14,6 +14,7 @@
 #include "core/figure/preview.hpp"
 #include "core/figure/raster.hpp"
 #include "tests/api/error_of.hpp"
+#include "tests/core/figure/laid_out.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::figure {
@@ -24,12 +25,7 @@ using namespace shapes;
 constexpr int kSize = 256;
 
 UnwrappedSurface flattened(const TriMesh& mesh, const Vec2& scale) {
-  UnwrappedSurface out{mesh.faces, {}, {}};
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.source.push_back(v);
-    out.uv.emplace_back(mesh.positions[v].head<2>().cwiseProduct(scale));
-  }
-  return out;
+  return laid_out(mesh, [&](const Vec3& p) { return Vec2(p.head<2>().cwiseProduct(scale)); });
 }
 
 Image picture(const TriMesh& mesh, const UnwrappedSurface& out,

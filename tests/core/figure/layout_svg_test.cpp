@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "tests/core/figure/laid_out.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::figure {
@@ -14,12 +15,7 @@ using namespace shapes;
 
 /// The map (x, y) -> (x, y) after `stretch` along x: of a flat mesh its layout.
 UnwrappedSurface flattened(const TriMesh& mesh, double stretch = 1) {
-  UnwrappedSurface out{mesh.faces, {}, {}};
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.source.push_back(v);
-    out.uv.emplace_back(stretch * mesh.positions[v].x(), mesh.positions[v].y());
-  }
-  return out;
+  return laid_out(mesh, [&](const Vec3& p) { return Vec2(stretch * p.x(), p.y()); });
 }
 
 std::string picture(const TriMesh& mesh, const UnwrappedSurface& out) {

@@ -9,6 +9,7 @@
 #include "core/figure/colour_scale.hpp"
 #include "core/figure/seam_lines.hpp"
 #include "core/figure/view.hpp"
+#include "tests/core/figure/laid_out.hpp"
 #include "tests/core/obj_reader.hpp"
 #include "tests/core/shapes.hpp"
 
@@ -16,21 +17,6 @@ namespace unwrapd::figure {
 namespace {
 
 using namespace shapes;
-
-/// A layout that gives every vertex the UV f(position).
-template <class Map>
-UnwrappedSurface laid_out(const TriMesh& mesh, Map f) {
-  UnwrappedSurface out{mesh.faces, {}, {}};
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.source.push_back(v);
-    out.uv.push_back(f(mesh.positions[v]));
-  }
-  return out;
-}
-
-UnwrappedSurface by_xy(const TriMesh& mesh, double scale = 1) {
-  return laid_out(mesh, [&](const Vec3& p) { return Vec2(scale * p.head<2>()); });
-}
 
 Image picture(const TriMesh& mesh, const UnwrappedSurface& out, int size = 256) {
   const Surface surface = surface_of(mesh);

@@ -9,6 +9,7 @@
 #include "core/figure/layout_image.hpp"
 #include "core/figure/layout_svg.hpp"
 #include "core/figure/painting.hpp"
+#include "tests/core/figure/laid_out.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::figure {
@@ -100,11 +101,11 @@ TEST(Template, LaidOverItsBackgroundIsTheOpaquePicture) {
   const Surface surface = surface_of(mesh);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(0.05, 0.95);
-  UnwrappedSurface out{mesh.faces, {}, {}};
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {  // tangled: all that can be drawn is
-    out.source.push_back(v);
-    out.uv.emplace_back(place(random), place(random));
-  }
+  const UnwrappedSurface out =
+      laid_out(mesh, [&](const Vec3&) {  // tangled: all that can be drawn is
+        const double u = place(random);
+        return Vec2(u, place(random));
+      });
   LayoutLook look(Colouring::flips);
   look.numbers = true;
   const Image opaque = layout_image({&surface, 1}, {&out, 1}, look, kPageSide);
@@ -127,11 +128,7 @@ TEST(Template, WhatLiesBeyondThePageIsCutOff) {
 
 TEST(Template, EdgesAreThoseWithinIslandsAndTheirOutlinesEachOnce) {
   const TriMesh mesh = grid(6, 4);
-  UnwrappedSurface out{mesh.faces, {}, {}};
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.source.push_back(v);
-    out.uv.emplace_back(mesh.positions[v].head<2>());
-  }
+  const UnwrappedSurface out = by_xy(mesh);
   const auto faces = std::ssize(mesh.faces);
   const auto ends = std::ssize(outline(out)), inner = std::ssize(inner_edges(out));
   EXPECT_EQ(ends + 2 * inner, 3 * faces);

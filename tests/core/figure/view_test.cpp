@@ -8,21 +8,13 @@
 
 #include "core/figure/colour_scale.hpp"
 #include "core/figure/preview.hpp"
+#include "tests/core/figure/laid_out.hpp"
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::figure {
 namespace {
 
 using namespace shapes;
-
-UnwrappedSurface projected_along_z(const TriMesh& mesh) {
-  UnwrappedSurface out{mesh.faces, {}, {}};
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    out.source.push_back(v);
-    out.uv.emplace_back(mesh.positions[v].head<2>());
-  }
-  return out;
-}
 
 /// Rows of a square part of a picture in which something is drawn: first and last.
 std::pair<int, int> drawn_rows(const Image& image, int left, int top, int side) {
@@ -74,7 +66,7 @@ TEST(Aspect, AnyAnglesGiveAnOrthonormalViewWithUpUp) {
 TEST(Preview, ShowsTheSideThatIsAskedFor) {
   const TriMesh mesh = grid(3, 3);  // in the plane z = 0, its outer side towards +Z
   const Surface surface = surface_of(mesh);
-  const UnwrappedSurface out = projected_along_z(mesh);
+  const UnwrappedSurface out = by_xy(mesh);
   const auto brightness = [&](const char* name) {
     const Image image = preview({&surface, 1}, {&out, 1}, 128, aspect_named(name));
     long sum = 0;
@@ -91,7 +83,7 @@ TEST(Preview, ShowsTheSideThatIsAskedFor) {
 TEST(Turntable, HasEightViewsAtOneScale) {
   const TriMesh mesh = cube();
   const Surface surface = surface_of(mesh);
-  const UnwrappedSurface out = projected_along_z(mesh);
+  const UnwrappedSurface out = by_xy(mesh);
   const Image sheet = turntable({&surface, 1}, {&out, 1}, 514);
   EXPECT_EQ(sheet.width, 512);
   EXPECT_EQ(sheet.height, 256);
