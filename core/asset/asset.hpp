@@ -58,10 +58,11 @@ void read_uvs(Asset& asset);
 /// "" where there is none. Meshes that share geometry have the materials of the first.
 void name_materials(Asset& asset);
 
+inline constexpr std::size_t kMostShownFaces = 200'000;
+
 /// Where the scene shows the surfaces, in the order of nodes: each as often as nodes show it while
 /// that makes no more than kMostShownFaces or twice the asset's own, else once. A surface that no
 /// node shows is left out. Empty if the surfaces lie where their own coordinates put them.
-inline constexpr std::size_t kMostShownFaces = 200'000;
 std::vector<ShownSurface> shown_surfaces(const Asset& asset);
 
 /// The asset with its new texture coordinates, as one blob (a .gltf embeds its buffers as data

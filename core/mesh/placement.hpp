@@ -1,8 +1,7 @@
 #pragma once
 // Where a scene shows its meshes.
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include <cstddef>
 
@@ -19,14 +18,9 @@ struct Placement {
 
   /// The cofactors of `linear`: they map the normal of an area, as long as the area, to that of its
   /// image.
-  [[nodiscard]] Eigen::Matrix3d cofactors() const {
-    Eigen::Matrix3d cofactor;
-    for (int k = 0; k < 3; ++k)
-      cofactor.row(k) = linear.row((k + 1) % 3).cross(linear.row((k + 2) % 3));
-    return cofactor;
-  }
+  [[nodiscard]] Eigen::Matrix3d cofactors() const;
 
-  [[nodiscard]] bool mirrors() const { return linear.determinant() < 0; }
+  [[nodiscard]] bool mirrors() const;
 };
 
 /// A surface, by its number, and one of its places.

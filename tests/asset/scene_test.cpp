@@ -105,25 +105,6 @@ TEST(Scales, ReachMeshesOfTheSameGeometry) {
   EXPECT_EQ(scales_of(b), std::vector<double>{3});
 }
 
-TEST(Scales, AreReadAtOnceHoweverManyNodesShowManySurfaces) {
-  Builder b = square();
-  const Json primitive = b.json["meshes"][0]["primitives"][0];
-  for (int i = 0; i < 2'000; ++i) {  // each a surface; mesh 2,001 has all of them
-    const std::size_t corners = b.add("VEC3", 5126, {0, 0, 0, 1. + i, 0, 0, 0, 1, 0});
-    b.json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", corners}}}}}}});
-  }
-  Json all = Json::array();
-  for (int i = 1; i <= 2'000; ++i) all.push_back(b.json["meshes"][std::size_t(i)]["primitives"][0]);
-  b.json["meshes"].push_back({{"primitives", all}});
-  b.json["nodes"] = Json::array();
-  b.json.erase("scenes");
-  for (int i = 0; i < 50'000; ++i)
-    b.json["nodes"].push_back({{"mesh", 2'001}, {"scale", {i / 1e4, i / 1e4, i / 1e4}}});
-  const std::vector<double> scales = scales_of(b);
-  EXPECT_EQ(scales.size(), 2'001U);
-  EXPECT_NEAR(scales.back(), 4.9999, 1e-9);
-}
-
 TEST(Scales, CountInTheDefaultSceneOnlyUnlessItShowsNothing) {
   Builder b = two_meshes(R"([{"mesh": 0}, {"mesh": 1}, {"mesh": 1, "scale": [9, 9, 9]}, {}])");
   b.json["scenes"] = Json::parse(R"([{"nodes": [3]}, {"nodes": [0, 1]}, {"nodes": [2]}])");

@@ -1,9 +1,11 @@
 // The nodes of a document: their references, and where they put meshes. A node with two parents is
 // accepted; readers show it at both places, and here it lies where the first of them puts it.
 // Animations, and the extension that gives a node many instances, move nothing here.
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <optional>
 
 #include "core/asset/gltf/elements.hpp"
 #include "core/asset/reader/steps.hpp"
@@ -71,8 +73,8 @@ void check_scenes(const Gltf& gltf, std::size_t node_count) {
   }
 }
 
-/// The numbers of a member, or what they are without it. Only UVs depend on them, so that a wrong
-/// member is no reason to refuse an asset.
+/// The numbers of a member, or what they are without it. The asset comes back with the member as it
+/// is, so that a wrong one is no reason to refuse it; nor is a wrong number of a skin or a scene.
 template <std::size_t N>
 std::array<double, N> numbers(const Json& node, const char* name, std::array<double, N> otherwise) {
   const auto member = node.find(name);
@@ -83,6 +85,18 @@ std::array<double, N> numbers(const Json& node, const char* name, std::array<dou
     read[k] = member->at(k).get<double>();
   }
   return read;
+}
+
+/// The number of a list's entry, if a value is one.
+std::optional<std::size_t> index_in(const Json& value, std::size_t size) {
+  if (!value.is_number_unsigned() || value.get<std::size_t>() >= size) return std::nullopt;
+  return value.get<std::size_t>();
+}
+
+/// The same of a member, which may be absent.
+std::optional<std::size_t> index_in(const Json& object, const char* name, std::size_t size) {
+  const auto member = object.find(name);
+  return member == object.end() ? std::nullopt : index_in(*member, size);
 }
 
 /// A matrix by columns (glTF 2.0, Sec. 3.5.2).
@@ -115,13 +129,11 @@ Placement local_placement(const Json& node) {
 
 /// The inverse bind matrix of a skin's first joint.
 Placement inverse_bind(const Gltf& gltf, const Json& skin) {
-  const auto member = skin.find("inverseBindMatrices");
-  if (member == skin.end() || !member->is_number_unsigned()) return {};
-  const auto accessor = member->get<std::size_t>();
-  if (accessor >= gltf.accessors.size() || gltf.accessors[accessor].components != 16 ||
-      gltf.accessors[accessor].count == 0)
+  const auto accessor = index_in(skin, "inverseBindMatrices", gltf.accessors.size());
+  if (!accessor || gltf.accessors[*accessor].components != 16 ||
+      gltf.accessors[*accessor].count == 0)
     return {};
-  const Elements matrices(gltf, accessor);
+  const Elements matrices(gltf, *accessor);
   std::array<double, 16> m;
   for (std::size_t k = 0; k < m.size(); ++k) m[k] = matrices.component_of(0, k);
   return from_columns(m);
@@ -131,17 +143,16 @@ Placement inverse_bind(const Gltf& gltf, const Json& skin) {
 /// where the first joint does.
 std::optional<Placement> placement_by_skin(const Gltf& gltf, const Json& node,
                                            const std::vector<Placement>& world) {
-  const auto number = node.find("skin");
   const auto skins = gltf.json.find("skins");
-  if (number == node.end() || !number->is_number_unsigned() || skins == gltf.json.end() ||
-      !skins->is_array() || number->get<std::size_t>() >= skins->size())
-    return std::nullopt;
-  const Json& skin = skins->at(number->get<std::size_t>());
-  const auto joints = skin.is_object() ? skin.find("joints") : skin.end();
-  if (joints == skin.end() || !joints->is_array() || joints->empty() ||
-      !joints->front().is_number_unsigned() || joints->front().get<std::size_t>() >= world.size())
-    return std::nullopt;
-  return world[joints->front().get<std::size_t>()] * inverse_bind(gltf, skin);
+  if (skins == gltf.json.end() || !skins->is_array()) return std::nullopt;
+  const auto number = index_in(node, "skin", skins->size());
+  if (!number) return std::nullopt;
+  const Json& skin = skins->at(*number);
+  const auto joints = skin.find("joints");
+  if (joints == skin.end() || !joints->is_array() || joints->empty()) return std::nullopt;
+  const auto first = index_in(joints->front(), world.size());
+  if (!first) return std::nullopt;
+  return world[*first] * inverse_bind(gltf, skin);
 }
 
 /// The place of every node in the space of its scene.
@@ -164,10 +175,9 @@ std::vector<Placement> world_placements(const Json& nodes, const Children& child
 std::vector<char> in_default_scene(const Gltf& gltf, const Children& children,
                                    const std::vector<std::size_t>& order) {
   std::vector<char> is_in(order.size());
-  const auto number = gltf.json.find("scene");
-  const bool is_named = number != gltf.json.end() && number->is_number_unsigned();
-  const std::size_t scene = is_named ? number->get<std::size_t>() : 0;
-  if (scene >= list_size(gltf, "scenes")) return is_in;
+  const std::size_t count = list_size(gltf, "scenes");
+  if (count == 0) return is_in;
+  const std::size_t scene = index_in(gltf.json, "scene", count).value_or(0);
   const auto roots = Node(gltf.json).at("scenes").at(scene).find("nodes");
   for (std::size_t k = 0; roots && k < roots->array_size(); ++k) is_in[roots->at(k).number()] = 1;
   for (const std::size_t i : order)

@@ -1,5 +1,7 @@
 // How large a scene shows its meshes. The page has texels for what is seen: a mesh of one unit that
 // a node makes ten times as large gets ten times the texels along its sides.
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>

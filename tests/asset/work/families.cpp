@@ -147,6 +147,21 @@ std::string star(int corners) {
   return text + "v 0.001 0.0003 0\n" + face + ' ' + std::to_string(corners) + '\n';
 }
 
+/// As many nodes as surfaces, each showing all of them.
+MadeFile nodes_of_many_surfaces(int n) {
+  Builder b = square();
+  Json all = Json::array();
+  for (int i = 0; i < n; ++i) {
+    b.json["accessors"].push_back({{"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+    all.push_back({{"attributes", {{"POSITION", b.json["accessors"].size() - 1}}}});
+    b.json["meshes"].push_back({{"primitives", {all.back()}}});
+  }
+  b.json["meshes"].push_back({{"primitives", all}});
+  for (int i = 0; i < n; ++i) b.json["nodes"].push_back({{"mesh", n + 1}});
+  b.json.erase("scenes");
+  return {b.glb()};
+}
+
 MadeFile stars(int n) {
   const std::string one = star(512);
   std::string text = one;
@@ -198,6 +213,7 @@ std::vector<Family> gltf_families() {
       {"names", many_names},
       {"sparse", sparse},
       {"a chain of nodes", chain_of_nodes},
+      {"nodes of many surfaces", nodes_of_many_surfaces},
   };
 }
 
