@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/pipeline/layout.hpp"
 #include "core/unwrap.hpp"
 #include "tests/core/shapes.hpp"
 
@@ -156,6 +157,23 @@ TEST(SceneScale, CountsAsIfTheMeshHadIt) {
   UnwrapOptions at_density{.max_distortion = 2.02, .page_fit = PageFit::multiple_of_four};
   at_density.packing.texels_per_unit = 40;
   expect_as_shown(at_density);
+}
+
+/// Borders decide between the charts of two bounds.
+TEST(SceneScale, CountsForBorders) {
+  const auto borders = [](const std::vector<Surface>& surfaces) {
+    SerialExecutor serial;
+    const auto all = pipeline::prepare_charts(surfaces, {.max_distortion = 2.02}, {}, serial).all;
+    pipeline::Layout layout = pipeline::empty_layouts(all, 1).front();
+    for (std::size_t s = 0; s < surfaces.size(); ++s)
+      for (const charts::Chart& chart : all->surfaces[s].charts)
+        layout.charts[s].emplace_back(all, &chart);
+    return std::pair(pipeline::border_of(*all), pipeline::border_of(layout));
+  };
+  const auto small = borders(scene(8)), shown = borders(as_shown(scene(8)));
+  EXPECT_GT(shown.first, 0);
+  EXPECT_DOUBLE_EQ(small.first, shown.first);
+  EXPECT_DOUBLE_EQ(small.second, shown.second);
 }
 
 TEST(SceneScale, CountsWhereUvsAreKept) {
