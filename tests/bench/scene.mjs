@@ -14,7 +14,7 @@ const MESHES = Number(process.argv[3] ?? 300);
 const ROUNDS = Number(process.argv[4] ?? 3);
 const { Server } = await import("../fault/server.mjs");
 const { Postgres } = await import("../postgres/postgres.mjs");
-const { freePort } = await import("../farm/nodes.mjs");
+const { freePort } = await import("../fault/free_port.mjs");
 const { scene } = await import("./made_scene.mjs");
 
 const SHARED = ["segment", "merge", "factor", "solve", "untangle"];

@@ -1,20 +1,10 @@
-// What tests do with a real object store, whichever it is. A subclass has name, endpoint and key, starts
-// its process `gateway` by startGateway(), and cleans up by remove().
+// What tests do with a real object store, whichever it is. A subclass has name, endpoint, key and the
+// file `log` of its process `gateway`, which startGateway() starts; remove() cleans up.
 import { execFileSync } from "node:child_process";
-import { createServer } from "node:net";
+import { readFileSync } from "node:fs";
 import { setTimeout as sleep } from "node:timers/promises";
 
 export const SECONDS_TO_START = 60;
-
-/** A port that nobody has now. */
-export function freePort() {
-  return new Promise((resolve) => {
-    const server = createServer().listen(0, "127.0.0.1", () => {
-      const { port } = server.address();
-      server.close(() => resolve(port));
-    });
-  });
-}
 
 export class ObjectStore {
   /** Whether an answer to nobody in particular says that it works. */
@@ -24,10 +14,11 @@ export class ObjectStore {
 
   async answers() {
     for (const giveUp = Date.now() + SECONDS_TO_START * 1000; Date.now() < giveUp; await sleep(100)) {
-      const answer = await fetch(this.endpoint).catch(() => undefined);
+      const answer = await fetch(this.endpoint, { signal: AbortSignal.timeout(5000) }).catch(() => undefined);
       if (answer && this.isReady(answer)) return;
+      if (this.gateway.exitCode !== null) break;
     }
-    throw new Error(`${this.name} does not answer`);
+    throw new Error(`${this.name} does not answer; its log ends with\n${readFileSync(this.log, "utf8").slice(-2000)}`);
   }
 
   /** As if its machine lost power; the objects stay. */

@@ -6,7 +6,8 @@ import { existsSync, mkdirSync, mkdtempSync, openSync, rmSync, writeFileSync } f
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-import { freePort, ObjectStore, SECONDS_TO_START } from "./object_store.mjs";
+import { freePort } from "../fault/free_port.mjs";
+import { ObjectStore, SECONDS_TO_START } from "./object_store.mjs";
 
 const PROGRAMS = ["ceph-mon", "ceph-osd", "ceph", "radosgw", "radosgw-admin"];
 export const NOT_INSTALLED = "radosgw is not installed (Debian packages radosgw, ceph-mon, ceph-osd)";
@@ -97,7 +98,8 @@ export class Radosgw extends ObjectStore {
   }
 
   startGateway() {
-    const log = openSync(join(this.folder, "gateway.log"), "a");
+    this.log = join(this.folder, "gateway.log");
+    const log = openSync(this.log, "a");
     this.gateway = spawn("radosgw", ["-d", "-n", "client.rgw", "-c", this.config], { stdio: ["ignore", log, log] });
   }
 

@@ -6,7 +6,8 @@ import { tmpdir, userInfo } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-import { freePort, ObjectStore } from "./object_store.mjs";
+import { freePort } from "../fault/free_port.mjs";
+import { ObjectStore } from "./object_store.mjs";
 
 const KINDS = ["account", "container", "object"];
 export const NOT_INSTALLED = "swift is not installed (Debian packages swift-proxy, swift-account, swift-container, swift-object)";
@@ -102,6 +103,7 @@ export class Swift extends ObjectStore {
   }
 
   startGateway() {
+    this.log = join(this.folder, "proxy.log");
     this.gateway = this.#spawn("proxy", this.port, proxy(this.more));
   }
 

@@ -7,7 +7,6 @@ import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { randomBytes } from "node:crypto";
 import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test, { after } from "node:test";
@@ -15,6 +14,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 
 import yaml from "js-yaml";
 
+import { freePort } from "../fault/free_port.mjs";
 import { grid } from "../fault/server.mjs";
 import { isInstalled, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
 
@@ -37,22 +37,6 @@ chmodSync(scratch, 0o755);
 const holder = { Authorization: `Bearer ${key}` };
 
 const run = (...args) => execFileSync(engine, args, { encoding: "utf8" }).trim();
-
-/** Two neighbouring ports that nobody has now. */
-async function freePorts() {
-  const listen = (port) =>
-    new Promise((resolve, reject) => {
-      const server = createServer().once("error", reject);
-      server.listen(port, "127.0.0.1", () => resolve(server));
-    });
-  for (;;) {
-    const first = await listen(0);
-    const { port } = first.address();
-    const second = await listen(port + 1).catch(() => undefined);
-    [first, second].forEach((server) => server?.close());
-    if (second) return port;
-  }
-}
 
 /** "8.31 MB", "512kB" */
 function megabytes(text) {
@@ -97,7 +81,7 @@ test("the image is small, labelled, and of a user who is not root", () => {
 
 /** Starts the image as it is meant to run, with more flags, and without a shell (/usr/bin is empty). */
 async function start(...flags) {
-  const port = await freePorts();
+  const port = await freePort(2);
   [url, admin] = [`http://127.0.0.1:${port}`, `http://127.0.0.1:${port + 1}`];
   run("run", "--detach", "--name", name, "--network", "host", "--user", "10001:10001", "--read-only",
     "--cap-drop", "ALL", "--security-opt", "no-new-privileges", "--memory", "512m", "--volume", `${name}:/data`,
@@ -196,7 +180,7 @@ function playedFarm(text) {
 test("podman plays a farm, whose worker ends the jobs that another node takes in", async (t) => {
   if (engine !== "podman") return t.skip("only podman can play it");
   if (!isInstalled()) return t.skip(NOT_INSTALLED);
-  const port = await freePorts();
+  const port = await freePort(2);
   const postgres = new Postgres({ sync: false, settings: { listen_addresses: "*", port } });
   const objects = playedFarm(readFileSync(new URL("../../docker/kubernetes/farm.yaml", import.meta.url), "utf8"));
   const file = join(scratch, "farm.yaml");

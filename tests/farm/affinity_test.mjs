@@ -2,8 +2,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
+import { freePort } from "../fault/free_port.mjs";
 import { grid, QUICK } from "../fault/server.mjs";
-import { Farm, freePort, options, send } from "./nodes.mjs";
+import { Farm, options, send } from "./nodes.mjs";
 
 const MESHES = [grid(20), grid(21)];
 

@@ -8,8 +8,9 @@ import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 import yaml from "js-yaml";
 
+import { freePort } from "../fault/free_port.mjs";
 import { QUICK } from "../fault/server.mjs";
-import { Farm, freePort, isInstalled, options, send } from "./nodes.mjs";
+import { Farm, isInstalled, options, send } from "./nodes.mjs";
 
 const ROOT = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 const DOCKER = join(ROOT, "docker");

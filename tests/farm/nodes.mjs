@@ -6,7 +6,6 @@ import { connect, createServer } from "node:net";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 
-export { freePort } from "../bucket/object_store.mjs";
 import { COUNT_ENDS, isInstalled as hasPostgres, NOT_INSTALLED, Postgres } from "../postgres/postgres.mjs";
 import { dataDirectory, grid, Server } from "../fault/server.mjs";
 

@@ -8,9 +8,10 @@ import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 import yaml from "js-yaml";
 
+import { freePort } from "../fault/free_port.mjs";
 import { dataDirectory, ENDLESS, QUICK } from "../fault/server.mjs";
 import { Postgres } from "../postgres/postgres.mjs";
-import { Farm, freePort, isInstalled, options, send } from "./nodes.mjs";
+import { Farm, isInstalled, options, send } from "./nodes.mjs";
 
 const DOCKER = join(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../../docker");
 const read = (path) => readFileSync(join(DOCKER, path), "utf8");

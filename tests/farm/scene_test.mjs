@@ -5,8 +5,9 @@ import test from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
 import { scene } from "../bench/made_scene.mjs";
+import { freePort } from "../fault/free_port.mjs";
 import { dataDirectory, ENDLESS, Server } from "../fault/server.mjs";
-import { Farm, freePort, options, send, sha256Of } from "./nodes.mjs";
+import { Farm, options, send, sha256Of } from "./nodes.mjs";
 
 const SCENE = scene(150, 10, 18); // 120,000 faces
 const PATH = "/v1/jobs?effort=fast&max_distortion=2.02";
