@@ -250,7 +250,9 @@ constexpr std::array kRows = {
         "JSON pointers of the primitives to unwrap; all others keep their UVs. Empty: all."),
     choice<&JobOptions::output, kOutputs>("output", kEveryMethod,
                                           "Format of the result. auto: the format of the input, or "
-                                          "GLB for STL, PLY and OFF, which are only read."),
+                                          "GLB for STL, PLY and OFF, which are only read. Another "
+                                          "format keeps normals and the colours of "
+                                          "vertices; a note tells what it lacks."),
     choice<&A::compression, kCompressions>(
         "compression", kEveryMethod,
         "Encoding of a glTF's geometry. keep: as in the input; none: uncompressed; meshopt: "

@@ -14,20 +14,15 @@ namespace {
 constexpr std::string_view kColourAttribute = "COLOR_0", kStartMark = "\xef\xbb\xbf";
 constexpr std::array<std::string_view, 4> kPlyColours = {"red", "green", "blue", "alpha"};
 
-/// The colour of a vertex, if the statement has one.
-std::optional<std::array<double, 3>> colour_in(Words words) {
+/// The colour of a vertex, if the statement has one after the keyword.
+std::optional<Colour> colour_of_vertex(Words words) {
   for (int skipped = 0; skipped < 3; ++skipped) words.next();
-  std::array<double, 3> colour{};
-  for (double& channel : colour) {
-    const std::optional<double> value = number_in(words.next());
-    if (!value) return std::nullopt;
-    channel = *value;
-  }
-  return colour;
+  return colour_in(words);
 }
 
-double value_of(const std::array<double, 3>& colour, const std::optional<std::size_t>& channel) {
-  return channel ? colour[*channel] : (colour[0] + colour[1] + colour[2]) / 3;
+double value_of(const Colour& colour, const std::optional<std::size_t>& channel) {
+  if (channel) return colour[*channel];
+  return (double(colour[0]) + double(colour[1]) + double(colour[2])) / 3;
 }
 
 /// The properties of a PLY's vertices whose mean counts.
@@ -107,7 +102,7 @@ std::vector<double> obj_values(const obj::Obj& obj, const AttributeName& name) {
     pace.add(1 + (at.next - at.begin) / 16);
     Words words(std::string_view(obj.text).substr(at.begin, at.end - at.begin));
     if (words.next() != "v") continue;
-    const std::optional<std::array<double, 3>> colour = colour_in(words);
+    const std::optional<Colour> colour = colour_of_vertex(words);
     has_colours = has_colours || colour;
     values.push_back(colour && is_colour ? value_of(*colour, name.channel) : 0);
   }

@@ -7,17 +7,10 @@
 #include <utility>
 
 #include "core/base/cancel.hpp"
+#include "core/base/srgb.hpp"
 
 namespace unwrapd::texture {
 namespace {
-
-/// IEC 61966-2-1.
-double from_srgb(double stored) {
-  return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
-}
-double to_srgb(double value) {
-  return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-}
 
 /// [i]: the value of which i is stored, in `count` steps.
 std::vector<float> table(std::size_t count, bool is_srgb) {

@@ -69,7 +69,7 @@ TEST(GltfAsObj, SaysWhatIsLacking) {
   Builder all = square();
   Json& primitive = all.json["meshes"][0]["primitives"][0];
   primitive["material"] = 0;
-  for (const char* name : {"COLOR_0", "_ID", "TEXCOORD_0", "TEXCOORD_3"})
+  for (const char* name : {"COLOR_0", "COLOR_1", "_ID", "TEXCOORD_0", "TEXCOORD_3"})
     primitive["attributes"][name] = name[0] == 'T'
                                         ? all.add("VEC2", 5126, std::vector<double>(8, 0))
                                         : all.add("VEC4", 5126, std::vector<double>(16, 1));
@@ -79,8 +79,8 @@ TEST(GltfAsObj, SaysWhatIsLacking) {
   all.json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
   const std::vector<std::string> texts = notes_on(all);
   ASSERT_EQ(texts.size(), 1U);
-  for (const char* part : {"materials", "colours of vertices", "other sets", "custom attributes",
-                           "morph targets", "skins", "animations"})
+  for (const char* part : {"materials", "further colours of vertices", "other sets",
+                           "custom attributes", "morph targets", "skins", "animations"})
     EXPECT_THAT(texts[0], testing::HasSubstr(part));
   Builder twice = square();
   twice.json["nodes"] = Json::parse(R"([{"mesh": 0, "children": [1]}, {"mesh": 0}])");

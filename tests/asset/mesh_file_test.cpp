@@ -237,9 +237,10 @@ TEST(Off, WhatFollowsOnALineIsToldAsLeftOut) {
   const std::string vertices = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0", face = "\n3 0 1 2";
   EXPECT_THAT(dropped(vertices + face + " 255 0 0\n"), HasSubstr(": face colours."));
   EXPECT_THAT(dropped(vertices + face + " 7"), HasSubstr(": face colours."));
-  EXPECT_THAT(dropped(vertices + " 1 0 0 1" + face), HasSubstr(": vertex colours."));
-  EXPECT_THAT(dropped("C" + vertices + " 1 0 0 1" + face + " 3"),
-              HasSubstr(": vertex colours, face colours."));
+  EXPECT_THAT(dropped(vertices + " 7" + face), HasSubstr(": vertex colours."));  // of a list
+  EXPECT_THAT(dropped("STC" + vertices + " 1 0 0 1 0 0" + face + " 3"),
+              HasSubstr(": texture coordinates, vertex colours, face colours."));
+  EXPECT_EQ(dropped("C" + vertices + " 1 0 0 1" + face), "");
   for (const char* end : {"", "\n", "\r\n", " \t \n", "  # red\n", " \r# red\n"})
     EXPECT_EQ(dropped(vertices + face + end), "") << end;
   EXPECT_EQ(dropped(vertices + " # red" + face), "");

@@ -198,7 +198,7 @@ TEST(ObjMaterials, OtherPartsOfTheObjThatAGltfLacksAreNamed) {
   const std::string all =
       "o Part\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\ng A\nf 1 2 3\nl 1 3\np 2\n";
   EXPECT_THAT(dropped(all, Format::glb),
-              HasSubstr("colours of vertices, lines, points, names of objects and groups. Send"));
+              HasSubstr("converted: lines, points, names of objects and groups. Send"));
   EXPECT_EQ(dropped(all, Format::obj), "");
   EXPECT_EQ(dropped("v 0 0 0 1\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", Format::glb), "");  // a weight
 }

@@ -1,5 +1,5 @@
-// Writes geometry, UVs and normals of a glTF; OBJ has no more. Normals are written corner by
-// corner, since the pieces of a surface may have different ones at the same vertex.
+// Writes geometry, UVs, normals and colours of a glTF; OBJ has no more. Normals are written corner
+// by corner, since the pieces of a surface may have different ones at the same vertex.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -12,26 +12,46 @@
 #include "core/asset/gltf/scene.hpp"
 #include "core/asset/obj/text.hpp"
 #include "core/base/cancel.hpp"
+#include "core/base/srgb.hpp"
 
 namespace unwrapd::asset::convert {
 namespace {
 
-/// The accessor of a piece's normals: that of the first primitive that uses the piece.
-std::vector<std::optional<std::size_t>> normals_of_pieces(const Gltf& gltf) {
-  std::vector<std::optional<std::size_t>> normals(gltf.pieces.size());
+/// The accessor of a primitive's attribute, unless it is none that glTF allows. components: at
+/// least.
+std::optional<std::size_t> accessor_of(const Gltf& gltf, const Primitive& primitive,
+                                       std::string_view semantic, std::size_t components) {
+  const auto found = std::ranges::find(primitive.attributes, semantic,
+                                       &std::pair<std::string, std::size_t>::first);
+  if (found == primitive.attributes.end() || !primitive.has_triangles) return std::nullopt;
+  const Accessor& accessor = gltf.accessors[found->second];
+  if (accessor.components < components || accessor.type == ComponentType::u32) return std::nullopt;
+  return found->second;
+}
+
+/// One for each piece: that of the first primitive that uses the piece.
+std::vector<std::optional<std::size_t>> accessors_of(const Gltf& gltf, std::string_view semantic,
+                                                     std::size_t components) {
+  std::vector<std::optional<std::size_t>> accessors(gltf.pieces.size());
   for (const Primitive& primitive : gltf.primitives)
-    for (const auto& [semantic, accessor] : primitive.attributes)
-      if (semantic == "NORMAL" && primitive.has_triangles && !normals[primitive.piece] &&
-          gltf.accessors[accessor].components == 3 &&
-          gltf.accessors[accessor].type != ComponentType::u32)
-        normals[primitive.piece] = accessor;
-  return normals;
+    if (const auto own = accessor_of(gltf, primitive, semantic, components);
+        own && !accessors[primitive.piece])
+      accessors[primitive.piece] = own;
+  return accessors;
 }
 
 /// Of length 1 if the placement is more than a move.
 Vec3 placed_normal(const Vec3& normal, const Placement& placement) {
   if (placement.linear.isIdentity(0)) return normal;
   return (placement.mirrors() ? -1 : 1) * (placement.cofactors() * normal).normalized();
+}
+
+/// Whether it has colours that the OBJ has not.
+bool has_more_colours(const Gltf& gltf, const Primitive& primitive) {
+  const auto count = std::ranges::count_if(primitive.attributes, [](const auto& attribute) {
+    return attribute.first.starts_with("COLOR_");
+  });
+  return count > (accessor_of(gltf, primitive, "COLOR_0", 3) ? 1 : 0);
 }
 
 /// What an OBJ of the glTF does not have, in words.
@@ -53,7 +73,8 @@ std::vector<std::string> lacking_parts(const Gltf& gltf) {
   };
   const auto any = [&](auto test) { return std::ranges::any_of(gltf.primitives, test); };
   add(any([](const Primitive& p) { return p.material.has_value(); }), "materials and their images");
-  add(has_attribute("COLOR_"), "colours of vertices");
+  add(any([&](const Primitive& p) { return has_more_colours(gltf, p); }),
+      "further colours of vertices");
   add(has_attribute("TEXCOORD_"), "other sets of texture coordinates");
   add(has_attribute("_"), "custom attributes");
   add(any([](const Primitive& p) { return !p.targets.empty(); }), "morph targets");
@@ -70,7 +91,8 @@ class ObjFromGltf {
       : gltf_(gltf),
         surfaces_(surfaces),
         unwrapped_(unwrapped),
-        normal_accessors_(normals_of_pieces(gltf)),
+        normal_accessors_(accessors_of(gltf, "NORMAL", 3)),
+        colour_accessors_(accessors_of(gltf, "COLOR_0", 3)),
         placements_(first_placements(gltf, surfaces)) {}
 
   std::string write() {
@@ -78,7 +100,7 @@ class ObjFromGltf {
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
       throw_if_cancelled(gltf_.stop);
       out_ += "o " + object_name(s) + '\n';
-      append_vertices(s);
+      append_vertices(s, colours_of(s, piece));
       for (; piece < gltf_.pieces.size() && belongs(gltf_.pieces[piece], s); ++piece)
         write_piece(piece);
       vertex_base_ += surfaces_[s].mesh.vertex_count();
@@ -93,11 +115,39 @@ class ObjFromGltf {
     return piece.face_count == 0 || piece.surface == surface;
   }
 
-  void append_vertices(std::size_t surface) {
+  /// Of the surface's vertices, white where they have none; empty if none has.
+  [[nodiscard]] std::vector<Colour> colours_of(std::size_t surface, std::size_t piece) const {
+    std::vector<Colour> colours;
+    for (; piece < gltf_.pieces.size() && belongs(gltf_.pieces[piece], surface); ++piece) {
+      if (!colour_accessors_[piece] || gltf_.pieces[piece].face_count == 0) continue;
+      colours.resize(surfaces_[surface].mesh.positions.size(), Colour{1, 1, 1, 1});
+      read_colours(gltf_.pieces[piece], *colour_accessors_[piece], colours);
+    }
+    return colours;
+  }
+
+  void read_colours(const Piece& piece, std::size_t accessor, std::vector<Colour>& colours) const {
+    const Elements linear(gltf_, accessor);
+    for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
+      check_cancelled_every(t, gltf_.stop);
+      for (const Index v : surfaces_[piece.surface].mesh.faces[t]) {
+        const Index vertex = gltf_.vertices[piece.surface][as_size(v)];
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double light = linear.component_of(as_size(vertex), k);
+          colours[as_size(v)][k] =
+              static_cast<float>(to_srgb(light > 0 ? std::min(light, 1.0) : 0));
+        }
+      }
+    }
+  }
+
+  void append_vertices(std::size_t surface, const std::vector<Colour>& colours) {
     Pace pace(gltf_.stop);
-    for (const Vec3& position : surfaces_[surface].mesh.positions) {
+    const std::vector<Vec3>& positions = surfaces_[surface].mesh.positions;
+    for (std::size_t v = 0; v < positions.size(); ++v) {
       pace.add(8);
-      obj::append_vec3(out_, "v", placements_[surface](position));
+      const Colour* const colour = colours.empty() ? nullptr : &colours[v];
+      obj::append_v(out_, placements_[surface](positions[v]), colour);
     }
     for (const Vec2& uv : unwrapped_[surface].uv) {
       pace.add(4);
@@ -151,7 +201,7 @@ class ObjFromGltf {
       for (const std::size_t k : order) {
         const Index vertex = gltf_.vertices[piece.surface][as_size(surface.mesh.faces[t][k])];
         const Vec3 normal = placed_normal(normals.vec3_at(as_size(vertex)), placement);
-        obj::append_vec3(out_, "vn", normal.allFinite() ? normal : Vec3(0, 0, 0));
+        obj::append_vn(out_, normal.allFinite() ? normal : Vec3(0, 0, 0));
       }
     }
   }
@@ -159,7 +209,8 @@ class ObjFromGltf {
   const Gltf& gltf_;
   std::span<const Surface> surfaces_;
   std::span<const UnwrappedSurface> unwrapped_;
-  std::vector<std::optional<std::size_t>> normal_accessors_;
+  std::vector<std::optional<std::size_t>> normal_accessors_;  ///< one a piece
+  std::vector<std::optional<std::size_t>> colour_accessors_;
   std::vector<Placement> placements_;  ///< one a surface
   std::string out_;
   Index vertex_base_ = 0;

@@ -8,9 +8,10 @@ std::string mesh_file_as_obj(const mesh_files::MeshFile& file, const Surface& su
                              const UnwrappedSurface& unwrapped) {
   Pace pace(file.stop);
   std::string out;
-  for (const Vec3& position : surface.mesh.positions) {
+  for (std::size_t v = 0; v < surface.mesh.positions.size(); ++v) {
     pace.add(8);
-    obj::append_vec3(out, "v", position);
+    obj::append_v(out, surface.mesh.positions[v],
+                  file.colours.empty() ? nullptr : &file.colours[v]);
   }
   for (const Vec2& uv : unwrapped.uv) {
     pace.add(4);
@@ -18,7 +19,7 @@ std::string mesh_file_as_obj(const mesh_files::MeshFile& file, const Surface& su
   }
   for (const Vec3& normal : file.normals) {
     pace.add(8);
-    obj::append_vec3(out, "vn", normal.allFinite() ? normal : Vec3(0, 0, 0));
+    obj::append_vn(out, normal.allFinite() ? normal : Vec3(0, 0, 0));
   }
   for (const Triangle& face : unwrapped.faces) {
     pace.add(8);

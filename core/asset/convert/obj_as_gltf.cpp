@@ -2,6 +2,8 @@
 // freely, so that each combination becomes a vertex.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <unordered_map>
@@ -15,6 +17,7 @@
 #include "core/asset/writer/patch.hpp"
 #include "core/base/cancel.hpp"
 #include "core/base/splitmix64.hpp"
+#include "core/base/srgb.hpp"
 
 namespace unwrapd::asset::convert {
 namespace {
@@ -29,7 +32,8 @@ struct Vertices {
   std::vector<Float3> normals;  ///< empty unless every corner has one
   std::vector<std::array<float, 2>> uv;
   std::vector<std::array<float, 2>> old_uv;     ///< of the input; empty unless they are kept
-  std::vector<Index> sources;                   ///< in the OBJ
+  std::vector<Index> sources;                   ///< in the input
+  std::span<const Colour> colours = {};         ///< of the sources; empty if the input has none
   std::map<Index, std::vector<Index>> corners;  ///< [part]: three to a face
 };
 
@@ -127,7 +131,9 @@ Vertices vertices_of(const obj::Obj& obj, const Surface& surface, const Unwrappe
                       keeps_texcoords ? corner.texcoord : obj::kNoTexcoord});
       }
     }
-  return combiner.take();
+  Vertices vertices = combiner.take();
+  vertices.colours = obj.colours;
+  return vertices;
 }
 
 Vertices vertices_of(const mesh_files::MeshFile& file, const Surface& surface,
@@ -138,7 +144,9 @@ Vertices vertices_of(const mesh_files::MeshFile& file, const Surface& surface,
     for (std::size_t k = 0; k < 3; ++k)
       combiner.add(t, k, {file.normals.empty() ? obj::kNoNormal : surface.mesh.faces[t][k]});
   }
-  return combiner.take();
+  Vertices vertices = combiner.take();
+  vertices.colours = file.colours;
+  return vertices;
 }
 
 /// The positions of the vertices relative to an origin.
@@ -162,6 +170,28 @@ Json vec3_accessor(const std::vector<Float3>& values, NewViews& views) {
           {"type", "VEC3"}};
 }
 
+/// Linear in light, as glTF wants colours; 16 bits keep the 8 bits of sRGB.
+Json colour_accessor(const Vertices& vertices, NewViews& views) {
+  constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
+  std::vector<std::array<std::uint16_t, 4>> values;
+  values.reserve(vertices.sources.size());
+  for (const Index source : vertices.sources) {
+    const Colour& colour = vertices.colours[as_size(source)];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double value = k < 3 ? from_srgb(colour[k]) : colour[k];
+      if (k == 0) values.emplace_back();
+      values.back()[k] = static_cast<std::uint16_t>(std::lround(kMost * value));
+    }
+  }
+  const std::string_view bytes(reinterpret_cast<const char*>(values.data()),
+                               values.size() * sizeof(values.front()));
+  return {{"bufferView", views.add(bytes, 0, kArrayBufferTarget)},
+          {"componentType", ComponentType::u16},
+          {"normalized", true},
+          {"count", values.size()},
+          {"type", "VEC4"}};
+}
+
 /// The primitives of all parts with faces.
 void add_primitives(const Vertices& vertices, const Json& attributes, const Gltf& empty,
                     NewViews& views, Json& json) {
@@ -183,6 +213,10 @@ Json add_vertices(const std::vector<Float3>& positions, const Vertices& vertices
   if (!vertices.normals.empty()) {
     attributes["NORMAL"] = accessors.size();
     accessors.push_back(vec3_accessor(vertices.normals, views));
+  }
+  if (!vertices.colours.empty()) {
+    attributes["COLOR_0"] = accessors.size();
+    accessors.push_back(colour_accessor(vertices, views));
   }
   if (!vertices.old_uv.empty()) {
     attributes["TEXCOORD_1"] = 1;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/asset/base/colour.hpp"
 #include "core/asset/base/input.hpp"
 #include "core/mesh/tri_mesh.hpp"
 #include "core/types/file_repair.hpp"
@@ -18,6 +19,7 @@ namespace unwrapd::asset::mesh_files {
 struct MeshFile {
   std::vector<Vec3> normals;         ///< one a vertex, or empty
   UvMap uv;                          ///< one a vertex, V pointing up, or empty
+  std::vector<Colour> colours;       ///< one a vertex, or empty
   std::int64_t polygon_count = 0;    ///< of more than 3 corners; the answer has triangles
   std::vector<std::string> dropped;  ///< what the answer leaves out: "vertex red", "face flags"
   std::vector<FileRepair> repairs;   ///< none so far

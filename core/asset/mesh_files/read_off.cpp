@@ -61,7 +61,7 @@ class OffReader {
     read_vertices(vertices);
     read_faces(faces, vertices);
     if (keyword_.has_texcoords) file_.dropped.emplace_back("texture coordinates");
-    if (keyword_.has_colours || has_vertex_colours_) file_.dropped.emplace_back("vertex colours");
+    if (has_other_colours_) file_.dropped.emplace_back("vertex colours");
     if (has_face_colours_) file_.dropped.emplace_back("face colours");
     add_faces(polygons_, limits_, surface_, file_);
     return std::move(file_);
@@ -96,8 +96,21 @@ class OffReader {
       surface_.mesh.positions.push_back(read_vec3());
       if (!is_position(surface_.mesh.positions.back())) refuse_position(reader_.place());
       if (keyword_.has_normals) file_.normals.push_back(read_vec3());
-      has_vertex_colours_ |= reader_.skip_line() && !keyword_.has_texcoords;
+      read_colour();
     }
+    to_shares(file_.colours);
+  }
+
+  /// Three or four numbers after the position and the normal. Texture coordinates would follow the
+  /// colour, in lines of which nobody can tell whether it has an alpha; one number names a colour
+  /// of a list that the file does not hold.
+  void read_colour() {
+    const std::string_view rest = reader_.rest_of_line();
+    std::optional<Colour> colour;
+    if (!keyword_.has_texcoords) colour = colour_in(Words(rest));
+    add_colour(colour, surface_.mesh.positions.size(), file_.colours);
+    const bool may_be_colour = !keyword_.has_texcoords || keyword_.has_colours;
+    has_other_colours_ |= may_be_colour && !colour && !Words(rest).next().empty();
   }
 
   void read_faces(std::int64_t count, std::int64_t vertices) {
@@ -117,7 +130,7 @@ class OffReader {
   Surface& surface_;
   MeshFile file_;
   PolygonList polygons_;
-  bool has_vertex_colours_ = false, has_face_colours_ = false;  ///< on any line
+  bool has_other_colours_ = false, has_face_colours_ = false;  ///< on any line
 };
 
 }  // namespace

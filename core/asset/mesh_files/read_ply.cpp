@@ -1,5 +1,6 @@
-// Of a PLY, the positions, normals and texture coordinates of the element "vertex" and the corners
-// of the elements "face" and "tristrips" are read; all other values are passed over, and told.
+// Of a PLY, the positions, normals, texture coordinates and colours of the element "vertex" and the
+// corners of the elements "face" and "tristrips" are read; all other values are passed over, and
+// told.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,14 +15,28 @@ namespace unwrapd::asset::mesh_files {
 namespace {
 
 /// What a value of a vertex means.
-enum Role : std::size_t { kX, kY, kZ, kNormalX, kNormalY, kNormalZ, kU, kV, kRoles };
+enum Role : std::size_t {
+  kX,
+  kY,
+  kZ,
+  kNormalX,
+  kNormalY,
+  kNormalZ,
+  kU,
+  kV,
+  kRed,
+  kGreen,
+  kBlue,
+  kAlpha,
+  kRoles
+};
 
 struct RoleName {
   std::string_view name;
   Role role;
 };
 
-constexpr std::array<RoleName, 14> kRoleNames = {{{"x", kX},
+constexpr std::array<RoleName, 21> kRoleNames = {{{"x", kX},
                                                   {"y", kY},
                                                   {"z", kZ},
                                                   {"nx", kNormalX},
@@ -34,7 +49,23 @@ constexpr std::array<RoleName, 14> kRoleNames = {{{"x", kX},
                                                   {"texture_u", kU},
                                                   {"texture_v", kV},
                                                   {"texture_s", kU},
-                                                  {"texture_t", kV}}};
+                                                  {"texture_t", kV},
+                                                  {"red", kRed},
+                                                  {"green", kGreen},
+                                                  {"blue", kBlue},
+                                                  {"alpha", kAlpha},
+                                                  {"diffuse_red", kRed},
+                                                  {"diffuse_green", kGreen},
+                                                  {"diffuse_blue", kBlue}}};
+
+constexpr double kNoAlpha = std::numeric_limits<double>::quiet_NaN();  // to_shares() makes it 1
+
+/// Roles that mean something together only; those after `needed` may be missing.
+struct RoleGroup {
+  Role first, needed, last;
+};
+constexpr std::array<RoleGroup, 3> kGroups = {
+    {{kNormalX, kNormalZ, kNormalZ}, {kU, kV, kV}, {kRed, kBlue, kAlpha}}};
 
 using Values = std::array<double, kRoles>;
 
@@ -76,7 +107,8 @@ class PlyReader {
     file_.dropped.push_back(element.name + " " + property.name);
   }
 
-  /// The role of each property of a vertex; kRoles if it has none. A role is given once.
+  /// The role of each property of a vertex; kRoles if it has none. A role is given once, and not
+  /// without the others of its group.
   std::vector<Role> roles_of(const PlyElement& element) {
     std::vector<Role> roles;
     for (const PlyProperty& property : element.properties) {
@@ -84,8 +116,16 @@ class PlyReader {
       const bool is_new = named != kRoleNames.end() && !property.count_type &&
                           std::ranges::find(roles, named->role) == roles.end();
       roles.push_back(is_new ? named->role : kRoles);
-      if (!is_new) drop(element, property);
     }
+    for (const RoleGroup& group : kGroups) {
+      const auto count = std::ranges::count_if(
+          roles, [&](Role role) { return role >= group.first && role <= group.needed; });
+      if (static_cast<std::size_t>(count) <= group.needed - group.first)
+        std::ranges::replace_if(
+            roles, [&](Role role) { return role >= group.first && role <= group.last; }, kRoles);
+    }
+    for (std::size_t p = 0; p < roles.size(); ++p)
+      if (roles[p] == kRoles) drop(element, element.properties[p]);
     return roles;
   }
 
@@ -94,8 +134,7 @@ class PlyReader {
     const std::vector<Role> roles = roles_of(element);
     const auto has = [&](Role role) { return std::ranges::find(roles, role) != roles.end(); };
     if (!has(kX) || !has(kY) || !has(kZ)) values_.refuse("the vertices have no x, y and z");
-    const bool has_normals = has(kNormalX) && has(kNormalY) && has(kNormalZ);
-    const bool has_uv = has(kU) && has(kV);
+    const bool has_normals = has(kNormalX), has_uv = has(kU), has_colours = has(kRed);
     surface_.mesh.positions.reserve(static_cast<std::size_t>(element.count));
     for (std::int64_t i = 0; i < element.count; ++i) {
       const Values row = read_vertex(element, roles);
@@ -103,7 +142,20 @@ class PlyReader {
       if (!is_position(surface_.mesh.positions.back())) refuse_position(values_.place());
       if (has_normals) file_.normals.emplace_back(row[kNormalX], row[kNormalY], row[kNormalZ]);
       if (has_uv) file_.uv.emplace_back(row[kU], row[kV]);
+      if (has_colours) file_.colours.push_back(colour_of(row, has(kAlpha)));
     }
+    to_shares(file_.colours);
+  }
+
+  static Colour colour_of(const Values& row, bool has_alpha) {
+    return {static_cast<float>(row[kRed]), static_cast<float>(row[kGreen]),
+            static_cast<float>(row[kBlue]), static_cast<float>(has_alpha ? row[kAlpha] : kNoAlpha)};
+  }
+
+  /// What is 1 of a colour's channel in the property's type.
+  static double unit_of(const PlyProperty& property, Role role) {
+    if (role < kRed) return 1;
+    return property.type == PlyType::u8 ? 255 : property.type == PlyType::u16 ? 65'535 : 1;
   }
 
   Values read_vertex(const PlyElement& element, const std::vector<Role>& roles) {
@@ -112,7 +164,8 @@ class PlyReader {
       if (roles[p] == kRoles) {
         values_.skip(element.properties[p]);
       } else {
-        row[roles[p]] = values_.next(element.properties[p].type);
+        row[roles[p]] =
+            values_.next(element.properties[p].type) / unit_of(element.properties[p], roles[p]);
       }
     }
     return row;

@@ -63,6 +63,13 @@ bool TextReader::skip_line() {
   return first != text_.begin() + next_ && (comment_ == '\0' || *first != comment_);
 }
 
+std::string_view TextReader::rest_of_line() {
+  const std::size_t begin = next_;
+  skip_line();
+  const std::string_view rest = text_.substr(begin, next_ - begin);
+  return comment_ == '\0' ? rest : rest.substr(0, rest.find(comment_));
+}
+
 double TextReader::number() {
   const std::string_view word = next();
   const std::optional<double> value = number_in(word);

@@ -33,6 +33,9 @@ class TextReader {
   /// Continues after the end of the latest word's line. Whether that had more words.
   bool skip_line();
 
+  /// The same, with what is left of the line, without a comment.
+  std::string_view rest_of_line();
+
   /// Throws Error{malformed_mesh} if the next word is no number. It may be infinite or undefined.
   double number();
 

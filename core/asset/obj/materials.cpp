@@ -210,7 +210,6 @@ std::string dropped_parts(const Obj& obj) {
   const auto add = [&](bool holds, const char* what) {
     if (holds) text += (text.empty() ? "" : ", ") + std::string(what);
   };
-  add(obj.has_colours, "colours of vertices");
   add(std::ranges::any_of(obj.elements, is_line), "lines");
   add(obj.has_points, "points");
   add(obj.has_names, "names of objects and groups");

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/asset/base/colour.hpp"
 #include "core/asset/base/input.hpp"
 #include "core/asset/base/pace.hpp"
 #include "core/asset/obj/mtl.hpp"
@@ -52,8 +53,8 @@ struct Obj {
   MtlLibrary looks;                    ///< materials of those that were sent
   std::map<std::string, std::string> images;  ///< sent ones that these use, by their paths
   std::vector<FileRepair> repairs;
-  bool has_colours = false;  ///< after the positions of vertices
-  bool has_names = false;    ///< of objects or groups
+  std::vector<Colour> colours;  ///< one a vertex, white where it has none; empty if none has
+  bool has_names = false;       ///< of objects or groups
   bool has_points = false;
   std::stop_token stop;  ///< of the job, for reading and writing
 

@@ -43,6 +43,7 @@ class ObjReader {
     }
     obj_.materials.resize(part_of_.size());
     for (const auto& [name, part] : part_of_) obj_.materials[as_size(part)] = name;
+    to_shares(obj_.colours);
     check_indices();
     triangulate_faces();
     note(FileRepairKind::line_ends_replaced, line_ends_);
@@ -92,8 +93,8 @@ class ObjReader {
                                                std::to_string(limits_.max_vertices) +
                                                " vertices; simplify it or split it");
     surface_.mesh.positions.push_back(read_vec3(words));
-    words.next();  // alone it is a weight, and with two more a colour
-    obj_.has_colours = obj_.has_colours || !words.next().empty();
+    std::optional<Colour> colour = colour_in(words);  // a single number is a weight
+    add_colour(colour, surface_.mesh.positions.size(), obj_.colours);
   }
 
   Vec3 read_vec3(Words& words) const {

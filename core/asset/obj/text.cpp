@@ -13,6 +13,14 @@ void append_number(std::string& out, Number value) {
   out.append(text.data(), result.ptr);
 }
 
+template <class Vector>
+void append_three(std::string& out, const Vector& values) {
+  for (int k = 0; k < 3; ++k) {
+    out += ' ';
+    append_number(out, values[k]);
+  }
+}
+
 }  // namespace
 
 void append_indices(std::string& out, Index vertex, Index texcoord, Index normal) {
@@ -37,12 +45,16 @@ void append_vt(std::string& out, const Vec2& uv) {
   out += '\n';
 }
 
-void append_vec3(std::string& out, std::string_view keyword, const Vec3& value) {
-  out += keyword;
-  for (int k = 0; k < 3; ++k) {
-    out += ' ';
-    append_number(out, value[k]);
-  }
+void append_vn(std::string& out, const Vec3& normal) {
+  out += "vn";
+  append_three(out, normal);
+  out += '\n';
+}
+
+void append_v(std::string& out, const Vec3& position, const Colour* colour) {
+  out += 'v';
+  append_three(out, position);
+  if (colour != nullptr) append_three(out, *colour);
   out += '\n';
 }
 

@@ -2,8 +2,8 @@
 // Statements of an OBJ as text.
 
 #include <string>
-#include <string_view>
 
+#include "core/asset/base/colour.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd::asset::obj {
@@ -13,7 +13,9 @@ void append_indices(std::string& out, Index vertex, Index texcoord, Index normal
 
 void append_vt(std::string& out, const Vec2& uv);
 
-/// keyword: "v" or "vn".
-void append_vec3(std::string& out, std::string_view keyword, const Vec3& value);
+void append_vn(std::string& out, const Vec3& normal);
+
+/// colour: null for none; an OBJ has no place for its alpha.
+void append_v(std::string& out, const Vec3& position, const Colour* colour);
 
 }  // namespace unwrapd::asset::obj
