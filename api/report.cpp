@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, 5> kFileRepairKinds = {
     "line_ends_replaced", "empty_indices_ignored", "normals_replaced", "chunks_padded",
     "shared_nodes_kept"};
 
-constexpr std::array<std::string_view, 27> kNoteCodes = {
+constexpr std::array<std::string_view, 28> kNoteCodes = {
     "option_unused",     "overlaps",           "distorted",
     "set_chosen",        "textures_lost",      "textures_transferred",
     "charts_exceeded",   "surface_noisy",      "chart_remapped",
@@ -33,8 +33,9 @@ constexpr std::array<std::string_view, 27> kNoteCodes = {
     "materials_copied",  "morph_targets_lost", "sets_filled",
     "images_separate",   "polygons_split",     "format_changed",
     "data_dropped",      "positions_rounded",  "origin_moved",
-    "lambda_repeated",   "kept_edges_cut",     "islands_tiny"};
-static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::islands_tiny) + 1);
+    "lambda_repeated",   "kept_edges_cut",     "islands_tiny",
+    "nodes_stretch"};
+static_assert(kNoteCodes.size() == static_cast<std::size_t>(NoteCode::nodes_stretch) + 1);
 
 /// The stages of timings_ms, in the order of a job.
 constexpr std::array kTimings = {"queue", "read",     "setup",   "segment", "merge", "factor",

@@ -9,6 +9,7 @@
 #include "core/asset/convert/convert.hpp"
 #include "core/asset/convert/float_frame.hpp"
 #include "core/asset/document.hpp"
+#include "core/asset/gltf/stretched.hpp"
 #include "core/asset/obj/materials.hpp"
 #include "core/asset/obj/polygons.hpp"
 #include "core/asset/painted.hpp"
@@ -256,9 +257,12 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
   }
   if (const mesh_files::MeshFile* file = std::get_if<mesh_files::MeshFile>(&document.source))
     more = mesh_files::note_on_mesh_file(*file, document.format);
-  if (const Gltf* gltf = std::get_if<Gltf>(&document.source))
+  if (const Gltf* gltf = std::get_if<Gltf>(&document.source)) {
+    const std::vector<Note> stretched = notes_on_stretched(*gltf, document.surfaces);
+    notes.insert(notes.end(), stretched.begin(), stretched.end());
     more = output == Format::obj ? convert::notes_on_obj_of_gltf(*gltf)
                                  : writer::side_effects_of_patch(*gltf, unwrapped, output);
+  }
   notes.insert(notes.end(), more.begin(), more.end());
   return notes;
 }

@@ -34,6 +34,7 @@ enum class NoteCode {
   lambda_repeated,       ///< charts have maps that come from those of another lambda of the list
   kept_edges_cut,        ///< seams run along edges of keep_edges nevertheless
   islands_tiny,          ///< islands have less area than one texel
+  nodes_stretch,         ///< nodes show meshes longer in one direction than in another
 };
 
 struct Note {

@@ -91,7 +91,7 @@ TEST(Report, NamesTheCodesOfNotesAsTheContractDoes) {
   for (const std::string& line : prose)
     if (const auto begin = line.find("- `"); begin != std::string::npos)
       told.push_back(line.substr(begin + 3, line.find('`', begin + 3) - begin - 3));
-  for (int i = 0; i <= static_cast<int>(NoteCode::islands_tiny); ++i) {
+  for (int i = 0; i <= static_cast<int>(NoteCode::nodes_stretch); ++i) {
     Report report;
     report.notes = {{static_cast<NoteCode>(i), "why"}};
     own.push_back(to_json(report, {}).at("notes").at(0).at("code"));

@@ -46,6 +46,29 @@ std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surfac
   return placements;
 }
 
+std::vector<std::optional<Placement>> largest_by_mesh(const Gltf& gltf) {
+  const auto meshes = gltf.json.find("meshes");
+  std::vector<std::optional<Placement>> largest(meshes == gltf.json.end() ? 0 : meshes->size());
+  std::vector<double> area(largest.size());
+  for (const MeshNode& node : gltf.mesh_nodes) {
+    const double own = node.placement.cofactors().squaredNorm();
+    if (largest[node.mesh] && own <= area[node.mesh]) continue;
+    largest[node.mesh] = node.placement;
+    area[node.mesh] = own;
+  }
+  return largest;
+}
+
+std::vector<std::vector<std::size_t>> meshes_of_surfaces(const Gltf& gltf, std::size_t count) {
+  std::vector<std::vector<std::size_t>> meshes(count);
+  for (const Primitive& primitive : gltf.primitives) {
+    if (!primitive.has_triangles) continue;
+    std::vector<std::size_t>& own = meshes[gltf.pieces[primitive.piece].surface];
+    if (own.empty() || own.back() != primitive.mesh) own.push_back(primitive.mesh);
+  }
+  return meshes;
+}
+
 std::size_t repeated_nodes(const Gltf& gltf) {
   const auto of_mesh = surfaces_of_meshes(gltf);
   std::set<std::size_t> meshes, surfaces;

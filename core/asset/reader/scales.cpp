@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/asset/base/as_size.hpp"
+#include "core/asset/gltf/scene.hpp"
 #include "core/asset/reader/steps.hpp"
 
 namespace unwrapd::asset::reader {
@@ -26,18 +27,6 @@ Eigen::Matrix3d areas_by_direction(const TriMesh& mesh) {
   return sum;
 }
 
-/// The cofactors of the placement that shows a mesh largest. One a mesh, so that its nodes and its
-/// surfaces do not multiply.
-std::vector<std::optional<Eigen::Matrix3d>> largest_of_meshes(const Gltf& gltf) {
-  std::vector<std::optional<Eigen::Matrix3d>> largest(list_size(gltf, "meshes"));
-  for (const MeshNode& node : gltf.mesh_nodes) {
-    const Eigen::Matrix3d own = node.placement.cofactors();
-    std::optional<Eigen::Matrix3d>& greatest = largest[node.mesh];
-    if (!greatest || own.squaredNorm() > greatest->squaredNorm()) greatest = own;
-  }
-  return largest;
-}
-
 /// The root of how many times its area the mesh has in the scene: of the root mean square over its
 /// faces, which is exact for one scale in all directions, and for a plane.
 std::optional<double> scale_of(const Eigen::Matrix3d& cofactor, const Eigen::Matrix3d& areas) {
@@ -47,28 +36,17 @@ std::optional<double> scale_of(const Eigen::Matrix3d& cofactor, const Eigen::Mat
   return std::abs(scale - 1) <= kRounding ? 1 : scale;
 }
 
-/// The meshes of which the surface has faces: its own, and those with the same geometry.
-std::vector<std::vector<std::size_t>> meshes_of_surfaces(const Gltf& gltf, std::size_t count) {
-  std::vector<std::vector<std::size_t>> meshes(count);
-  for (const Primitive& primitive : gltf.primitives) {
-    if (!primitive.has_triangles) continue;
-    std::vector<std::size_t>& own = meshes[gltf.pieces[primitive.piece].surface];
-    if (own.empty() || own.back() != primitive.mesh) own.push_back(primitive.mesh);
-  }
-  return meshes;
-}
-
 }  // namespace
 
 void set_scales(const Gltf& gltf, std::vector<Surface>& surfaces) {
   const auto meshes = meshes_of_surfaces(gltf, surfaces.size());
-  const auto shown = largest_of_meshes(gltf);
+  const auto shown = largest_by_mesh(gltf);
   std::vector<std::optional<double>> scales(surfaces.size());
   std::optional<double> least;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const Eigen::Matrix3d areas = areas_by_direction(surfaces[s].mesh);
     for (const std::size_t mesh : meshes[s])
-      if (shown[mesh]) scales[s] = std::max(scales[s], scale_of(*shown[mesh], areas));
+      if (shown[mesh]) scales[s] = std::max(scales[s], scale_of(shown[mesh]->cofactors(), areas));
     if (scales[s]) least = std::min(*scales[s], least.value_or(*scales[s]));
   }
   for (std::size_t s = 0; s < surfaces.size(); ++s)
