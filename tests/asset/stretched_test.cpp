@@ -54,15 +54,58 @@ TEST(Stretched, WhatNobodySeesIsNoReason) {
     EXPECT_EQ(note_at({{"scale", scale}}), "") << scale;
 }
 
+/// A box, and a triangle of this height beside it.
+Builder box_and_sliver(double height) {
+  Builder b = square();
+  std::vector<double> points;
+  for (int k = 0; k < 8; ++k)
+    for (int axis = 0; axis < 3; ++axis) points.push_back(k >> axis & 1);
+  for (const double x : {0., 0., 2., 1., height, 2., .4, 0., 2.}) points.push_back(x);
+  const std::vector<double> corners = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6,
+                                       3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5, 8, 9, 10};
+  const std::size_t positions = b.add("VEC3", 5126, points),
+                    indices = b.add("SCALAR", 5123, corners);
+  b.json["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", positions}}},
+                                          {"indices", indices}};
+  return b;
+}
+
+TEST(Stretched, ABoxHasTheRatioOfItsLongFaces) {
+  Builder b = box_and_sliver(6e-17);
+  b.json["nodes"][0]["scale"] = {3.5, 1, 1};
+  EXPECT_THAT(note_on(b), HasSubstr("(3.5 to 1)"));
+}
+
+TEST(Stretched, EdgesOfAThinPlateAreNoReason) {
+  Builder b = box_and_sliver(6e-17);
+  b.json["nodes"][0]["scale"] = {10, 10, 0.01};
+  EXPECT_EQ(note_on(b), "");
+}
+
+TEST(Stretched, TurnsAreNoReasonWhateverTheFaces) {
+  for (const double height : {6e-17, 1e-25, 1e-9}) {
+    Builder b = box_and_sliver(height);
+    b.json["nodes"][0]["rotation"] = {0.18, 0.36, 0.54, 0.74};
+    EXPECT_EQ(note_on(b), "") << height;
+    b.json["nodes"][0]["scale"] = {1, 1, 1.0001};
+    EXPECT_EQ(note_on(b), "") << height;
+  }
+}
+
 TEST(Stretched, TheNodeThatShowsAMeshLargestCounts) {
   Builder b = flat();
-  b.json["nodes"] =
-      Json::parse(R"([{"mesh": 0, "scale": [2, 1, 1]}, {"mesh": 0, "scale": [9, 9, 9]}])");
-  b.json["scenes"] = Json::parse(R"([{"nodes": [0, 1]}])");
+  const auto set = [&](const Json& first, const Json& second) {
+    b.json["nodes"] = {{{"mesh", 0}, {"scale", first}}, {{"mesh", 0}, {"scale", second}}};
+    b.json["scenes"] = Json::parse(R"([{"nodes": [0, 1]}])");
+  };
+  set({2, 1, 1}, {9, 9, 9});
   EXPECT_EQ(note_on(b), "");
-  b.json["nodes"][1]["scale"] = {1, 1, 1};
-  EXPECT_THAT(note_on(b), HasSubstr("(2 to 1)"));
-  EXPECT_THAT(note_on(b, Format::obj), HasSubstr("(2 to 1)"));
+  set({1, 3, 1000}, {20, 20, 20});  // of a flat mesh, thickness is nothing
+  EXPECT_EQ(note_on(b), "");
+  EXPECT_DOUBLE_EQ(read_file(b.glb()).surfaces()[0].scale, 20);
+  set({2, 1, 1}, {1, 1, 1});
+  for (const Format output : {Format::glb, Format::obj})
+    EXPECT_THAT(note_on(b, output), HasSubstr("(2 to 1)"));
 }
 
 TEST(Stretched, FewOfManyAreNamed) {

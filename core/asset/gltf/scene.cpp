@@ -1,9 +1,14 @@
 // A surface with the geometry of several meshes is shown where all of them are.
 #include "core/asset/gltf/scene.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
+
+#include "core/asset/base/as_size.hpp"
 
 namespace unwrapd::asset {
 namespace {
@@ -17,6 +22,27 @@ std::vector<std::set<std::size_t>> surfaces_of_meshes(const Gltf& gltf) {
       surfaces[primitive.mesh].insert(gltf.pieces[primitive.piece].surface);
   }
   return surfaces;
+}
+
+/// The sum of A_t n n^T over the faces: how much area looks in which direction.
+Eigen::Matrix3d areas_by_direction(const TriMesh& mesh) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const auto& [a, b, c] : mesh.faces) {
+    const Vec3& at = mesh.positions[as_size(a)];
+    const Vec3 twice = (mesh.positions[as_size(b)] - at).cross(mesh.positions[as_size(c)] - at);
+    if (const double length = twice.norm(); length > 0) sum += twice * twice.transpose() / length;
+  }
+  return sum;
+}
+
+/// How many times its area a mesh has there, by the mean square over its faces.
+double area_shown(const Placement& placement, const Eigen::Matrix3d& areas) {
+  const Eigen::Matrix3d cofactor = placement.cofactors();
+  return std::sqrt((cofactor * areas * cofactor.transpose()).trace() / areas.trace());
+}
+
+void keep_larger(const Shown& own, std::optional<Shown>& largest) {
+  if (!largest || own.area > largest->area) largest = own;
 }
 
 }  // namespace
@@ -46,27 +72,25 @@ std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surfac
   return placements;
 }
 
-std::vector<std::optional<Placement>> largest_by_mesh(const Gltf& gltf) {
-  const auto meshes = gltf.json.find("meshes");
-  std::vector<std::optional<Placement>> largest(meshes == gltf.json.end() ? 0 : meshes->size());
-  std::vector<double> area(largest.size());
-  for (const MeshNode& node : gltf.mesh_nodes) {
-    const double own = node.placement.cofactors().squaredNorm();
-    if (largest[node.mesh] && own <= area[node.mesh]) continue;
-    largest[node.mesh] = node.placement;
-    area[node.mesh] = own;
+std::vector<std::optional<Shown>> largest_shown(const Gltf& gltf,
+                                                std::span<const Surface> surfaces) {
+  const auto of_mesh = surfaces_of_meshes(gltf);
+  std::vector<Eigen::Matrix3d> areas;
+  for (const Surface& surface : surfaces) areas.push_back(areas_by_direction(surface.mesh));
+  std::vector<Eigen::Matrix3d> areas_of_mesh(of_mesh.size(), Eigen::Matrix3d::Zero());
+  for (std::size_t mesh = 0; mesh < of_mesh.size(); ++mesh)
+    for (const std::size_t s : of_mesh[mesh]) areas_of_mesh[mesh] += areas[s];
+  std::vector<std::optional<Shown>> by_mesh(of_mesh.size()), largest(surfaces.size());
+  for (const auto& [mesh, placement] : gltf.mesh_nodes)
+    if (mesh < of_mesh.size())
+      keep_larger({placement, area_shown(placement, areas_of_mesh[mesh])}, by_mesh[mesh]);
+  for (std::size_t mesh = 0; mesh < of_mesh.size(); ++mesh) {
+    if (!by_mesh[mesh]) continue;
+    const Placement& placement = by_mesh[mesh]->placement;
+    for (const std::size_t s : of_mesh[mesh])
+      keep_larger({placement, area_shown(placement, areas[s])}, largest[s]);
   }
   return largest;
-}
-
-std::vector<std::vector<std::size_t>> meshes_of_surfaces(const Gltf& gltf, std::size_t count) {
-  std::vector<std::vector<std::size_t>> meshes(count);
-  for (const Primitive& primitive : gltf.primitives) {
-    if (!primitive.has_triangles) continue;
-    std::vector<std::size_t>& own = meshes[gltf.pieces[primitive.piece].surface];
-    if (own.empty() || own.back() != primitive.mesh) own.push_back(primitive.mesh);
-  }
-  return meshes;
 }
 
 std::size_t repeated_nodes(const Gltf& gltf) {

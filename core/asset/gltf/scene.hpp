@@ -19,13 +19,16 @@ std::vector<ShownSurface> shown_by_nodes(const Gltf& gltf, std::span<const Surfa
 /// One a surface: where the first node shows it; as it is, where none does.
 std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surface> surfaces);
 
-/// The placement that shows a mesh largest. One a mesh, so that its nodes and its surfaces do not
-/// multiply; none where no node shows it.
-std::vector<std::optional<Placement>> largest_by_mesh(const Gltf& gltf);
+/// A placement that shows a surface.
+struct Shown {
+  Placement placement;
+  double area = 0;  ///< of the surface there, in shares of its own, by the rms over its faces
+};
 
-/// The meshes of which each of so many surfaces has faces: its own, and those with the same
-/// geometry.
-std::vector<std::vector<std::size_t>> meshes_of_surfaces(const Gltf& gltf, std::size_t count);
+/// One a surface: the placement that shows it largest, or none. Of a mesh, the node that shows all
+/// its surfaces largest counts, so that nodes and surfaces do not multiply.
+std::vector<std::optional<Shown>> largest_shown(const Gltf& gltf,
+                                                std::span<const Surface> surfaces);
 
 /// How many nodes show nothing but surfaces that nodes before them show.
 std::size_t repeated_nodes(const Gltf& gltf);

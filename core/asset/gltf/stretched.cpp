@@ -6,69 +6,80 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <string>
 
 #include "core/asset/base/as_size.hpp"
 #include "core/asset/gltf/scene.hpp"
+#include "core/base/cancel.hpp"
+#include "core/types/options.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
-constexpr double kMostDistorted = 2.02;  // D_angle, as charts of the preset texture have at most
+constexpr double kLeastShare = 0.05;    // of the area, that must be stretched
+constexpr double kLeastSine = 1e-5;     // of a face's corner; flatter ones tell nothing
+constexpr double kLeastArea = 1e-9;     // of a face, in shares of its own: others look at nobody
+constexpr double kEqualStretch = 1e-6;  // relative, of maps that keep all shapes
 constexpr std::size_t kMostNamed = 5;
 
-/// D_angle of the placement on the faces, weighted by their area in the scene. With the Gram
-/// matrices G of two edges and H of their images, it is tr(G^-1 H) (det G / det H)^(1/2) for a
-/// face.
-double distortion_of(const Eigen::Matrix3d& linear, const TriMesh& mesh) {
-  double sum = 0, areas = 0;
-  for (const auto& [a, b, c] : mesh.faces) {
+bool keeps_shapes(const Eigen::Matrix3d& linear) {
+  const Eigen::Matrix3d squares = linear.transpose() * linear;
+  const double mean = squares.trace() / 3;
+  return (squares - mean * Eigen::Matrix3d::Identity()).norm() <= kEqualStretch * mean;
+}
+
+/// The area in the scene, and that of stretched faces with the integral of their D_angle.
+struct StretchedArea {
+  double all = 0, stretched = 0, distortion = 0;
+};
+
+/// With the Gram matrices G of two edges and H of their images, D_angle of a face is
+/// tr(G^-1 H) (det G / det H)^(1/2).
+void add_face(const Vec3& e, const Vec3& f, const Eigen::Matrix3d& linear, StretchedArea& area) {
+  const double own = e.cross(f).norm();
+  if (!(own > kLeastSine * e.norm() * f.norm())) return;
+  const Vec3 p = linear * e, q = linear * f;
+  const double shown = p.cross(q).norm();
+  area.all += shown;
+  if (!(shown > kLeastArea * linear.squaredNorm() * own)) return;
+  const double trace = f.dot(f) * p.dot(p) - 2 * e.dot(f) * p.dot(q) + e.dot(e) * q.dot(q);
+  if (!(trace > kDefaultDistortion * own * shown)) return;
+  area.stretched += shown;
+  area.distortion += trace / own;
+}
+
+/// How many times longer the stretched faces are in one direction; 1 where there are too few.
+double stretch_of(const Eigen::Matrix3d& linear, const TriMesh& mesh, const std::stop_token& stop) {
+  if (keeps_shapes(linear)) return 1;
+  StretchedArea area;
+  for (std::size_t t = 0; t < mesh.faces.size(); ++t) {
+    check_cancelled_every(t, stop);
+    const auto& [a, b, c] = mesh.faces[t];
     const Vec3& at = mesh.positions[as_size(a)];
-    const Vec3 e = mesh.positions[as_size(b)] - at, f = mesh.positions[as_size(c)] - at;
-    const double area = e.cross(f).norm();
-    if (!(area > 0)) continue;
-    const Vec3 p = linear * e, q = linear * f;
-    sum += (f.dot(f) * p.dot(p) - 2 * e.dot(f) * p.dot(q) + e.dot(e) * q.dot(q)) / area;
-    areas += p.cross(q).norm();
+    add_face(mesh.positions[as_size(b)] - at, mesh.positions[as_size(c)] - at, linear, area);
   }
-  return areas > 0 ? sum / areas : 2;
+  if (!(area.stretched > kLeastShare * area.all)) return 1;
+  const double mean = area.distortion / area.stretched;  // r + 1 / r
+  return (mean + std::sqrt(std::max(mean * mean - 4, 0.0))) / 2;
 }
 
-/// The ratio of the two stretches of one map that has this D_angle everywhere.
-double ratio_of(double distortion) {
-  return (distortion + std::sqrt(std::max(distortion * distortion - 4, 0.0))) / 2;
-}
-
-std::string named(const Surface& surface, double distortion) {
+std::string named(const Surface& surface, double stretch) {
   std::array<char, 32> ratio{};
-  std::snprintf(ratio.data(), ratio.size(), " (%.3g to 1)", ratio_of(distortion));
+  std::snprintf(ratio.data(), ratio.size(), " (%.3g to 1)", stretch);
   return surface.name + ratio.data();
-}
-
-/// D_angle of the placement that shows the surface largest.
-double distortion_in_scene(const Surface& surface, std::span<const std::size_t> meshes,
-                           std::span<const std::optional<Placement>> largest) {
-  const Placement* shown = nullptr;
-  for (const std::size_t mesh : meshes)
-    if (largest[mesh] && (shown == nullptr || largest[mesh]->cofactors().squaredNorm() >
-                                                  shown->cofactors().squaredNorm()))
-      shown = &*largest[mesh];
-  return shown == nullptr ? 2 : distortion_of(shown->linear, surface.mesh);
 }
 
 }  // namespace
 
 std::vector<Note> notes_on_stretched(const Gltf& gltf, std::span<const Surface> surfaces) {
-  const auto meshes = meshes_of_surfaces(gltf, surfaces.size());
-  const auto largest = largest_by_mesh(gltf);
+  const std::vector<std::optional<Shown>> shown = largest_shown(gltf, surfaces);
   std::string names;
   std::size_t count = 0;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    const double distortion = distortion_in_scene(surfaces[s], meshes[s], largest);
-    if (!(distortion > kMostDistorted)) continue;
-    if (++count <= kMostNamed)
-      names += (names.empty() ? "" : ", ") + named(surfaces[s], distortion);
+    if (!shown[s]) continue;
+    const double stretch = stretch_of(shown[s]->placement.linear, surfaces[s].mesh, gltf.stop);
+    if (stretch == 1 || ++count > kMostNamed) continue;
+    names += (names.empty() ? "" : ", ") + named(surfaces[s], stretch);
   }
   if (count == 0) return {};
   if (count > kMostNamed) names += " and " + std::to_string(count - kMostNamed) + " more";
