@@ -248,11 +248,13 @@ constexpr std::array kRows = {
     plain<&A::primitives>(
         "primitives", OptionType::names, kEveryMethod,
         "JSON pointers of the primitives to unwrap; all others keep their UVs. Empty: all."),
-    choice<&JobOptions::output, kOutputs>("output", kEveryMethod,
-                                          "Format of the result. auto: the format of the input, or "
-                                          "GLB for STL, PLY and OFF, which are only read. Another "
-                                          "format keeps normals and the colours of "
-                                          "vertices; a note tells what it lacks."),
+    choice<&JobOptions::output, kOutputs>(
+        "output", kEveryMethod,
+        "Format of the result. auto: the format of the input, or GLB for STL, PLY and OFF, which "
+        "are only read. "
+        "A result in another format than the input has no more than that format holds: geometry, "
+        "normals, texture coordinates and the colours of vertices, and in a glTF the materials of "
+        "an OBJ. A note tells what is lost."),
     choice<&A::compression, kCompressions>(
         "compression", kEveryMethod,
         "Encoding of a glTF's geometry. keep: as in the input; none: uncompressed; meshopt: "

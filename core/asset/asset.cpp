@@ -256,7 +256,7 @@ std::vector<Note> side_effects(const Asset& asset, std::span<const UnwrappedSurf
                "to keep them in a set of their own."});
   }
   if (const mesh_files::MeshFile* file = std::get_if<mesh_files::MeshFile>(&document.source))
-    more = mesh_files::note_on_mesh_file(*file, document.format);
+    more = mesh_files::note_on_mesh_file(*file, document.format, output);
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source)) {
     const std::vector<Note> stretched = notes_on_stretched(*gltf, document.surfaces);
     notes.insert(notes.end(), stretched.begin(), stretched.end());

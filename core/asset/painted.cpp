@@ -135,11 +135,14 @@ std::vector<std::vector<double>> values_of(const Input& input, const Document& d
   if (const Gltf* gltf = std::get_if<Gltf>(&document.source))
     return GltfValues(*gltf, document.surfaces, name).read();
   if (const obj::Obj* obj = std::get_if<obj::Obj>(&document.source))
-    return {obj_values(*obj, name)};
-  if (document.format == Format::ply) return {ply_values(input, name)};
-  refuse_attribute(name, "an " + std::string(document.format == Format::stl ? "STL" : "OFF") +
-                             " is read without attributes of its vertices; leave out " +
-                             std::string(name.option) + ", or send a glTF, an OBJ or a PLY");
+    return {colour_values(obj->colours, name, "vertex of the OBJ")};
+  const auto& colours = std::get<mesh_files::MeshFile>(document.source).colours;
+  const bool has_colour = name.base == kColourAttribute && !colours.empty();
+  if (document.format == Format::ply && !has_colour) return {ply_values(input, name)};
+  if (document.format != Format::stl) return {colour_values(colours, name, "vertex of the file")};
+  refuse_attribute(name, "an STL is read without attributes of its vertices; leave out " +
+                             std::string(name.option) +
+                             ", or send a glTF, an OBJ, a PLY or an OFF");
 }
 
 void clamp_values(std::vector<double>& values) {

@@ -2,6 +2,7 @@
 // Painted preferences: values of vertices, read from the attribute that an option names.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +22,12 @@ struct AttributeName {
 /// The channel is one of r, g, b and a, behind the last dot.
 AttributeName attribute_name(std::string_view option, const std::string& given);
 
-/// One value a vertex. Throws Error{invalid_option} if there is no such attribute.
-std::vector<double> obj_values(const obj::Obj& obj, const AttributeName& name);
+inline constexpr std::string_view kColourAttribute = "COLOR_0";
+
+/// One value a vertex, NaN where it has no colour. what: of which file. Throws
+/// Error{invalid_option} if there is no such attribute.
+std::vector<double> colour_values(std::span<const Colour> colours, const AttributeName& name,
+                                  const std::string& what);
 std::vector<double> ply_values(const Input& input, const AttributeName& name);
 
 /// Throws Error{invalid_option} for an attribute that is missing; has: those that there are.

@@ -1,24 +1,15 @@
-// Values of vertices of an OBJ, whose colours follow the coordinates (v x y z r g b), and of a PLY,
-// whose vertices have any properties. Both are read in a pass of their own, which jobs without
-// painted preferences do not make.
+// Values of vertices: colours, as the file was read, and other properties of a PLY. These are read
+// in a pass of their own, which jobs without painted preferences do not make.
 #include <algorithm>
 #include <array>
 
-#include "core/asset/base/words.hpp"
 #include "core/asset/mesh_files/ply.hpp"
 #include "core/asset/painted.hpp"
 
 namespace unwrapd::asset {
 namespace {
 
-constexpr std::string_view kColourAttribute = "COLOR_0", kStartMark = "\xef\xbb\xbf";
 constexpr std::array<std::string_view, 4> kPlyColours = {"red", "green", "blue", "alpha"};
-
-/// The colour of a vertex, if the statement has one after the keyword.
-std::optional<Colour> colour_of_vertex(Words words) {
-  for (int skipped = 0; skipped < 3; ++skipped) words.next();
-  return colour_in(words);
-}
 
 double value_of(const Colour& colour, const std::optional<std::size_t>& channel) {
   if (channel) return colour[*channel];
@@ -90,26 +81,19 @@ class PlyValueReader {
 
 }  // namespace
 
-std::vector<double> obj_values(const obj::Obj& obj, const AttributeName& name) {
-  std::vector<double> values;
-  bool has_colours = false;
-  Pace pace(obj.stop);
-  const bool is_colour = name.base == kColourAttribute && name.channel.value_or(0) < 3;
-  Statement at;
-  at.next = obj.text.starts_with(kStartMark) ? kStartMark.size() : 0;
-  while (at.next < obj.text.size()) {
-    at = statement_at(obj.text, at.next);
-    pace.add(1 + (at.next - at.begin) / 16);
-    Words words(std::string_view(obj.text).substr(at.begin, at.end - at.begin));
-    if (words.next() != "v") continue;
-    const std::optional<Colour> colour = colour_of_vertex(words);
-    has_colours = has_colours || colour;
-    values.push_back(colour && is_colour ? value_of(*colour, name.channel) : 0);
-  }
-  if (!has_colours || !is_colour)
-    refuse_missing(name, "vertex of the OBJ",
+std::vector<double> colour_values(std::span<const Colour> colours, const AttributeName& name,
+                                  const std::string& what) {
+  const auto has = [&](std::size_t channel) {
+    return std::ranges::any_of(colours, [&](const Colour& own) { return own[channel] >= 0; });
+  };
+  const bool has_colours = has(0);
+  if (name.base != kColourAttribute || !has(name.channel.value_or(0)))
+    refuse_missing(name, what,
                    has_colours ? std::vector<std::string>{std::string(kColourAttribute)}
                                : std::vector<std::string>());
+  std::vector<double> values;
+  values.reserve(colours.size());
+  for (const Colour& colour : colours) values.push_back(value_of(colour, name.channel));
   return values;
 }
 

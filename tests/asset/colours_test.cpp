@@ -101,6 +101,65 @@ TEST(Colours, OfAPlyAreKeptWhateverTheirType) {
   }
 }
 
+TEST(Colours, AlmostInRangeAreNoBytes) {
+  const std::vector<std::string> floats = {"float red", "float green", "float blue"};
+  for (const std::string red : {"1.0000001", "1.02", "inf"}) {
+    const std::string file = ply(floats, {red + " 0 0", "0.2 0.4 0.6", "0 1 0.8"});
+    expect_light(colours_in_gltf(answer_of(file, Format::glb)), kThree);
+  }
+}
+
+TEST(Colours, OfIntegersHaveTheUnitOfTheirType) {
+  const std::string ints = ply({"int red", "int green", "int blue"}, {"1 0 1", "0 0 0", "0 1 0"});
+  expect_light(colours_in_gltf(answer_of(ints, Format::glb)),
+               {{1. / 255, 0, 1. / 255, 1}, {0, 0, 0, 1}, {0, 1. / 255, 0, 1}});
+  Colours clear = kThree;
+  clear[0][3] = 0.2, clear[2][3] = 0;
+  for (const std::string type : {"uchar", "int", "float"}) {
+    const std::string file = ply({type + " red", "uchar green", type + " blue", "uchar alpha"},
+                                 {"255 0 0 51", "51 102 153 255", "0 255 204 0"});
+    expect_light(colours_in_gltf(answer_of(file, Format::glb)), clear);
+  }
+  const std::string floats = ply({"float red", "float green", "float blue", "float alpha"},
+                                 {"255 0 0 0.2", "51 102 153 1", "0 255 204 0"});
+  expect_light(colours_in_gltf(answer_of(floats, Format::glb)), clear);
+}
+
+TEST(Colours, AreBytesWhereTheirAlphaIs) {
+  const std::string file =
+      "COFF\n3 1 0\n0 0 0 1 0 1 255\n1 0 0 0 0 0 255\n0 1 0 0 1 0 255\n3 0 1 2\n";
+  expect_light(colours_in_gltf(answer_of(file, Format::glb)),
+               {{1. / 255, 0, 1. / 255, 1}, {0, 0, 0, 1}, {0, 1. / 255, 0, 1}});
+}
+
+TEST(Colours, OfAnObjLackTheAlphaAndSaySo) {
+  const std::vector<std::string> properties = {"uchar red", "uchar green", "uchar blue",
+                                               "uchar alpha"};
+  const std::string clear = ply(properties, {"1 2 3 7", "1 2 3 255", "1 2 3 255"});
+  const std::string dense = ply(properties, {"1 2 3 255", "1 2 3 255", "1 2 3 255"});
+  EXPECT_THAT(dropped_of(clear, Format::obj), HasSubstr(": vertex alpha."));
+  EXPECT_EQ(dropped_of(clear, Format::glb), "");
+  EXPECT_EQ(dropped_of(dense, Format::obj), "");
+  const std::string clear_glb = answer_of(clear, Format::glb);
+  EXPECT_THAT(dropped_of(clear_glb, Format::obj), HasSubstr("the alpha of colours"));
+  EXPECT_EQ(dropped_of(answer_of(dense, Format::glb), Format::obj).find("colours"),
+            std::string::npos);
+}
+
+TEST(Colours, OfAVertexThatTwoPrimitivesColourAreTold) {
+  Builder b = square();
+  Json& primitives = b.json["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  const std::vector<double> corners = {0, 2, 3};
+  for (std::size_t k = 0; k < 2; ++k) {
+    primitives[k]["attributes"]["COLOR_0"] =
+        b.add("VEC3", 5126, std::vector<double>(12, static_cast<double>(k)));
+    primitives[k]["indices"] =
+        b.add("SCALAR", 5123, k == 0 ? std::vector<double>{0, 1, 2} : corners);
+  }
+  EXPECT_THAT(dropped_of(b.glb(), Format::obj), HasSubstr("other colours of vertices"));
+}
+
 TEST(Colours, OfAPlyMayHaveAnAlpha) {
   const std::string file = ply({"uchar red", "uchar green", "uchar blue", "uchar alpha"},
                                {"255 0 0 51", "51 102 153 255", "0 255 204 0"});
@@ -165,7 +224,7 @@ TEST(Colours, OfAGltfAreKeptByAnObj) {
   for (std::size_t v = 0; v < 4; ++v)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_NEAR(light(found[v][k]), bytes[4 * v + k] / 255, 1e-6);
-  EXPECT_EQ(dropped_of(b.glb(), Format::obj), "");
+  EXPECT_THAT(dropped_of(b.glb(), Format::obj), HasSubstr("glTF: the alpha of colours."));
 }
 
 TEST(Colours, OfOnePrimitiveLeaveTheOthersWhite) {

@@ -79,7 +79,7 @@ TEST(GltfAsObj, SaysWhatIsLacking) {
   all.json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
   const std::vector<std::string> texts = notes_on(all);
   ASSERT_EQ(texts.size(), 1U);
-  for (const char* part : {"materials", "further colours of vertices", "other sets",
+  for (const char* part : {"materials", "other colours of vertices", "other sets",
                            "custom attributes", "morph targets", "skins", "animations"})
     EXPECT_THAT(texts[0], testing::HasSubstr(part));
   Builder twice = square();

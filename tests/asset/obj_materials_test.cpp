@@ -188,6 +188,20 @@ TEST(ObjMaterials, WhatAGltfCannotHaveIsNamed) {
               HasSubstr("other than PNG and JPEG"));
 }
 
+TEST(ObjMaterials, ImagesAreNotMultipliedByColoursOfVertices) {
+  const std::string obj =
+      "mtllib a.mtl\nv 0 0 0 .5 .5 .5\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nv 1 1 0 0 1 0\nvt 0 0\n"
+      "usemtl image\nf 1/1 2/1 3/1\nusemtl plain\nf 2/1 4/1 3/1\n";
+  const Asset asset = read_with({{"a.mtl", "newmtl image\nmap_Kd a.png\nnewmtl plain\nKd 1 1 1\n"}},
+                                kAutomaticSet, obj);
+  const auto answer = read_naively(write(asset, split_nowhere(asset), Format::glb));
+  ASSERT_EQ(answer.size(), 2U);
+  EXPECT_FALSE(answer[0].faces[0].contains("COLOR_0"));
+  EXPECT_TRUE(answer[1].faces[0].contains("COLOR_0"));
+  EXPECT_THAT(note_with(notes_of(asset), NoteCode::data_dropped)->text,
+              HasSubstr("colours of vertices where the material has an image"));
+}
+
 TEST(ObjMaterials, OtherPartsOfTheObjThatAGltfLacksAreNamed) {
   const auto dropped = [](const std::string& text, Format output) {
     const Asset asset = read_file(text);

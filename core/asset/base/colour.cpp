@@ -3,16 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace unwrapd::asset {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr Colour kUnknown = {kNone, kNone, kNone, kNone};
+constexpr std::size_t kAlpha = 3;
+constexpr float kMostShare = 2;  // some files have shares a little above 1
 
-bool is_in_bytes(const Colour& colour) {
-  return std::ranges::any_of(std::span(colour).first(3), [](float value) { return value > 1; });
+/// Whether the channels have a value that is no share.
+Untold have_bytes(const std::vector<Colour>& colours, const Untold& untold) {
+  Untold bytes{};
+  for (const Colour& colour : colours)
+    for (std::size_t k = 0; k < colour.size(); ++k)
+      bytes[k] |= untold[k] && std::isfinite(colour[k]) && colour[k] > kMostShare;
+  return bytes;
 }
 
 }  // namespace
@@ -21,24 +27,35 @@ std::optional<Colour> colour_in(Words words) {
   Colour colour = kUnknown;
   for (std::size_t k = 0; k < colour.size(); ++k) {
     const std::optional<double> value = number_in(words.next());
-    if (!value && k < 3) return std::nullopt;
+    if (!value && k < kAlpha) return std::nullopt;
     if (value) colour[k] = static_cast<float>(*value);
   }
   return colour;
 }
 
-void add_colour(const std::optional<Colour>& colour, std::size_t vertices,
+void add_colour(const std::optional<Colour>& colour, std::size_t vertex_count,
                 std::vector<Colour>& colours) {
   if (!colour && colours.empty()) return;
-  colours.resize(vertices - 1, kUnknown);
+  colours.resize(vertex_count - 1, kUnknown);
   colours.push_back(colour.value_or(kUnknown));
 }
 
-void to_shares(std::vector<Colour>& colours) {
-  const float unit = std::ranges::any_of(colours, is_in_bytes) ? 255 : 1;
+void to_shares(std::vector<Colour>& colours, const Untold& untold) {
+  const Untold bytes = have_bytes(colours, untold);
+  const bool is_any = std::ranges::any_of(bytes, [](bool own) { return own; });
+  Colour unit{};
+  for (std::size_t k = 0; k < unit.size(); ++k)
+    unit[k] = untold[k] && (k < kAlpha ? is_any : bytes[kAlpha]) ? 255 : 1;
   for (Colour& colour : colours)
-    for (float& value : colour)
-      value = std::isnan(value) ? 1 : std::clamp(value / unit, 0.0F, 1.0F);
+    for (std::size_t k = 0; k < unit.size(); ++k)
+      colour[k] = std::clamp(colour[k] / unit[k], 0.0F, 1.0F);  // NaN stays
+}
+
+Colour as_shown(const Colour& colour) {
+  Colour shown = colour;
+  for (float& value : shown)
+    if (std::isnan(value)) value = 1;
+  return shown;
 }
 
 }  // namespace unwrapd::asset

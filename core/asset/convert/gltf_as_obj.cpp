@@ -2,7 +2,9 @@
 // by corner, since the pieces of a surface may have different ones at the same vertex.
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "core/asset/base/as_size.hpp"
@@ -46,12 +48,39 @@ Vec3 placed_normal(const Vec3& normal, const Placement& placement) {
   return (placement.mirrors() ? -1 : 1) * (placement.cofactors() * normal).normalized();
 }
 
-/// Whether it has colours that the OBJ has not.
-bool has_more_colours(const Gltf& gltf, const Primitive& primitive) {
-  const auto count = std::ranges::count_if(primitive.attributes, [](const auto& attribute) {
-    return attribute.first.starts_with("COLOR_");
-  });
-  return count > (accessor_of(gltf, primitive, "COLOR_0", 3) ? 1 : 0);
+bool has_alpha(const Gltf& gltf, std::size_t accessor) {
+  if (gltf.accessors[accessor].components < 4) return false;
+  const Elements colours(gltf, accessor);
+  for (std::size_t i = 0; i < gltf.accessors[accessor].count; ++i) {
+    check_cancelled_every(i, gltf.stop);
+    if (colours.component_of(i, 3) != 1) return true;
+  }
+  return false;
+}
+
+/// What the OBJ lacks of the glTF's colours.
+struct LackingColours {
+  bool others =
+      false;  ///< sets but the first, or colours of vertices that another primitive shares
+  bool alpha = false;
+};
+
+LackingColours lacking_colours(const Gltf& gltf) {
+  LackingColours lacking;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> of_vertices;  // mesh, positions
+  std::set<std::size_t> seen;
+  for (const Primitive& primitive : gltf.primitives) {
+    const auto count = std::ranges::count_if(primitive.attributes, [](const auto& attribute) {
+      return attribute.first.starts_with("COLOR_");
+    });
+    const auto own = accessor_of(gltf, primitive, "COLOR_0", 3);
+    lacking.others |= count > (own ? 1 : 0);
+    if (!own) continue;
+    const std::pair vertices(primitive.mesh, primitive.position);
+    lacking.others |= of_vertices.try_emplace(vertices, *own).first->second != *own;
+    lacking.alpha = lacking.alpha || (seen.insert(*own).second && has_alpha(gltf, *own));
+  }
+  return lacking;
 }
 
 /// What an OBJ of the glTF does not have, in words.
@@ -73,8 +102,9 @@ std::vector<std::string> lacking_parts(const Gltf& gltf) {
   };
   const auto any = [&](auto test) { return std::ranges::any_of(gltf.primitives, test); };
   add(any([](const Primitive& p) { return p.material.has_value(); }), "materials and their images");
-  add(any([&](const Primitive& p) { return has_more_colours(gltf, p); }),
-      "further colours of vertices");
+  const LackingColours colours = lacking_colours(gltf);
+  add(colours.others, "other colours of vertices");
+  add(colours.alpha, "the alpha of colours");
   add(has_attribute("TEXCOORD_"), "other sets of texture coordinates");
   add(has_attribute("_"), "custom attributes");
   add(any([](const Primitive& p) { return !p.targets.empty(); }), "morph targets");

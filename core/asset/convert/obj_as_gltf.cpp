@@ -176,7 +176,7 @@ Json colour_accessor(const Vertices& vertices, NewViews& views) {
   std::vector<std::array<std::uint16_t, 4>> values;
   values.reserve(vertices.sources.size());
   for (const Index source : vertices.sources) {
-    const Colour& colour = vertices.colours[as_size(source)];
+    const Colour colour = as_shown(vertices.colours[as_size(source)]);
     for (std::size_t k = 0; k < 4; ++k) {
       const double value = k < 3 ? from_srgb(colour[k]) : colour[k];
       if (k == 0) values.emplace_back();
@@ -226,6 +226,19 @@ Json add_vertices(const std::vector<Float3>& positions, const Vertices& vertices
   return attributes;
 }
 
+/// Takes colours from primitives whose material has an image: a glTF multiplies the two, while
+/// programs that read an OBJ show one of them.
+void show_images_alone(Json& json) {
+  for (Json& primitive : json["meshes"][0]["primitives"]) {
+    const auto material = primitive.find("material");
+    if (material == primitive.end()) continue;
+    const Json& own = json["materials"][material->get<std::size_t>()];
+    const auto surface = own.find("pbrMetallicRoughness");
+    if (surface != own.end() && surface->contains("baseColorTexture"))
+      primitive["attributes"].erase("COLOR_0");
+  }
+}
+
 /// obj: null for a format without materials.
 std::string write_gltf(const TriMesh& mesh, const Vertices& vertices, const obj::Obj* obj,
                        const std::stop_token& stop, Format output) {
@@ -246,7 +259,10 @@ std::string write_gltf(const TriMesh& mesh, const Vertices& vertices, const obj:
   add_primitives(vertices, attributes, empty, views, document.json);
   std::vector<Index> parts;
   for (const auto& [part, corners] : vertices.corners) parts.push_back(part);
-  if (obj != nullptr) obj::add_materials(*obj, parts, views, document.json);
+  if (obj != nullptr) {
+    obj::add_materials(*obj, parts, views, document.json);
+    show_images_alone(document.json);
+  }
   return writer::assemble(empty, std::move(document), output);
 }
 

@@ -106,7 +106,7 @@ void add_faces(const PolygonList& polygons, const ReadLimits& limits, Surface& s
   surface.part.assign(total, 0);
 }
 
-std::vector<Note> note_on_mesh_file(const MeshFile& file, Format input) {
+std::vector<Note> note_on_mesh_file(const MeshFile& file, Format input, Format output) {
   const std::string name = upper(format_name(input));
   std::vector<Note> notes = {
       {NoteCode::format_changed,
@@ -117,9 +117,13 @@ std::vector<Note> note_on_mesh_file(const MeshFile& file, Format input) {
     notes.push_back({NoteCode::polygons_split,
                      std::to_string(file.polygon_count) +
                          " faces have more than three corners; they are written as triangles."});
-  if (!file.dropped.empty())
+  std::vector<std::string> dropped = file.dropped;
+  const auto is_transparent = [](const Colour& colour) { return colour[3] < 1; };
+  if (output == Format::obj && std::ranges::any_of(file.colours, is_transparent))
+    dropped.emplace_back("vertex alpha");
+  if (!dropped.empty())
     notes.push_back({NoteCode::data_dropped, "The result lacks these properties of the " + name +
-                                                 ": " + listed(file.dropped) + "."});
+                                                 ": " + listed(dropped) + "."});
   return notes;
 }
 

@@ -69,6 +69,6 @@ void add_faces(const PolygonList& polygons, const ReadLimits& limits, Surface& s
                MeshFile& file);
 
 /// Notes on what the answer lacks, and why it is not in the format of the input.
-std::vector<Note> note_on_mesh_file(const MeshFile& file, Format input);
+std::vector<Note> note_on_mesh_file(const MeshFile& file, Format input, Format output);
 
 }  // namespace unwrapd::asset::mesh_files

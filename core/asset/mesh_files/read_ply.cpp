@@ -58,8 +58,6 @@ constexpr std::array<RoleName, 21> kRoleNames = {{{"x", kX},
                                                   {"diffuse_green", kGreen},
                                                   {"diffuse_blue", kBlue}}};
 
-constexpr double kNoAlpha = std::numeric_limits<double>::quiet_NaN();  // to_shares() makes it 1
-
 /// Roles that mean something together only; those after `needed` may be missing.
 struct RoleGroup {
   Role first, needed, last;
@@ -144,18 +142,30 @@ class PlyReader {
       if (has_uv) file_.uv.emplace_back(row[kU], row[kV]);
       if (has_colours) file_.colours.push_back(colour_of(row, has(kAlpha)));
     }
-    to_shares(file_.colours);
+    to_shares(file_.colours, untold_of(element, roles));
   }
 
+  /// Channels whose type tells no unit.
+  static Untold untold_of(const PlyElement& element, const std::vector<Role>& roles) {
+    Untold untold{};
+    for (std::size_t p = 0; p < roles.size(); ++p)
+      if (roles[p] >= kRed && roles[p] <= kAlpha)
+        untold[roles[p] - kRed] = is_of_floats(element.properties[p].type);
+    return untold;
+  }
+
+  static bool is_of_floats(PlyType type) { return type == PlyType::f32 || type == PlyType::f64; }
+
   static Colour colour_of(const Values& row, bool has_alpha) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return {static_cast<float>(row[kRed]), static_cast<float>(row[kGreen]),
-            static_cast<float>(row[kBlue]), static_cast<float>(has_alpha ? row[kAlpha] : kNoAlpha)};
+            static_cast<float>(row[kBlue]), static_cast<float>(has_alpha ? row[kAlpha] : kNone)};
   }
 
   /// What is 1 of a colour's channel in the property's type.
   static double unit_of(const PlyProperty& property, Role role) {
-    if (role < kRed) return 1;
-    return property.type == PlyType::u8 ? 255 : property.type == PlyType::u16 ? 65'535 : 1;
+    if (role < kRed || is_of_floats(property.type)) return 1;
+    return property.type == PlyType::u16 ? 65'535 : 255;
   }
 
   Values read_vertex(const PlyElement& element, const std::vector<Role>& roles) {

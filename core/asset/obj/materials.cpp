@@ -206,10 +206,14 @@ void take_images(const SentFiles& files, Obj& obj) {
 /// What of the OBJ's text, beside its materials, a glTF of it does not have.
 std::string dropped_parts(const Obj& obj) {
   const auto is_line = [](const Element& element) { return element.keyword == 'l'; };
+  bool has_image = false;
+  for_each_look(obj,
+                [&](const MtlMaterial& look) { has_image |= is_usable(obj, look.colour_map); });
   std::string text;
   const auto add = [&](bool holds, const char* what) {
     if (holds) text += (text.empty() ? "" : ", ") + std::string(what);
   };
+  add(!obj.colours.empty() && has_image, "colours of vertices where the material has an image");
   add(std::ranges::any_of(obj.elements, is_line), "lines");
   add(obj.has_points, "points");
   add(obj.has_names, "names of objects and groups");

@@ -54,7 +54,7 @@ void append_vn(std::string& out, const Vec3& normal) {
 void append_v(std::string& out, const Vec3& position, const Colour* colour) {
   out += 'v';
   append_three(out, position);
-  if (colour != nullptr) append_three(out, *colour);
+  if (colour != nullptr) append_three(out, as_shown(*colour));
   out += '\n';
 }
 

@@ -15,7 +15,7 @@ void append_vt(std::string& out, const Vec2& uv);
 
 void append_vn(std::string& out, const Vec3& normal);
 
-/// colour: null for none; an OBJ has no place for its alpha.
+/// colour: null for none, else as_shown(); an OBJ has no place for its alpha.
 void append_v(std::string& out, const Vec3& position, const Colour* colour);
 
 }  // namespace unwrapd::asset::obj
