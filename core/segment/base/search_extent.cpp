@@ -10,7 +10,7 @@ constexpr double kNever = 1e9;
 constexpr StandIn kNone{std::numeric_limits<Index>::max(), 0};
 
 constexpr std::array kExtents = {
-    SearchExtent{50'000, 3, 1, 4, .35, .1, kNone, {5'000, 3'000, 7'000}},     // fast
+    SearchExtent{50'000, 2, 1, 0, .35, .1, kNone, {5'000, 3'000, 7'000}},     // fast
     SearchExtent{100'000, 3, 1, 8, 1, .5, {6'000, 4'000}, {18'000, 12'000}},  // balanced
     SearchExtent{100'000, 12, 2, 40, kNever, 1, kNone, {18'000, 12'000}},     // best
 };

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/segment/base/labels.hpp"
 #include "core/segment/search/close_slits.hpp"
 #include "core/segment/search/merge_search.hpp"
 #include "core/solve/base/parallel_map.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr int kHalvesInVain = 4;  // that are tried where a page is far from full
 constexpr double kMuchEmptiness = 0.2;
+constexpr double kNearlyAsLong = 0.7;
 
 /// Of the box of a region's map.
 double longer_side(const Region& region) {
@@ -30,16 +32,17 @@ double longer_side(const Region& region) {
   return (high - low).maxCoeff();
 }
 
-/// The longest of the regions that can be halved.
-std::ptrdiff_t longest_of(const std::vector<MappedRegion>& regions,
-                          const std::vector<Candidate>& halved) {
-  std::ptrdiff_t longest = 0;
-  double most = 0;
-  for (std::size_t k = 0; k < regions.size(); ++k) {
-    const double own = halved[k].partition.regions.empty() ? 0 : longer_side(regions[k]);
-    if (own > most) most = own, longest = static_cast<std::ptrdiff_t>(k);
-  }
-  return longest;
+/// The longest region and those nearly as long, the longest first. The halves of a shorter one make
+/// no page smaller that has to hold the longest.
+std::vector<std::size_t> long_regions(const std::vector<MappedRegion>& regions) {
+  std::vector<double> side;
+  for (const MappedRegion& region : regions) side.push_back(rounded(longer_side(region)));
+  const double least = kNearlyAsLong * std::ranges::max(side);
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    if (side[k] >= least) found.push_back(k);
+  std::ranges::stable_sort(found, std::greater(), [&](std::size_t k) { return side[k]; });
+  return found;
 }
 
 }  // namespace
@@ -52,17 +55,18 @@ Candidate MergeSearch::bisect_regions(Candidate whole) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   Candidate best = price_halves(std::move(whole), kAny), now = best;
   for (int in_vain = 0; now.cost.all > now.cost.seams;) {
-    std::vector<Candidate> halved =
-        solve::parallel_map<Candidate>(now.partition.regions.size(), executor_,
-                                       [&](std::size_t k) { return with_halves(now, k); });
+    const std::vector<std::size_t> longest = long_regions(now.partition.regions);
+    std::vector<Candidate> halved = solve::parallel_map<Candidate>(
+        longest.size(), executor_, [&](std::size_t k) { return with_halves(now, longest[k]); });
     learn(halved);
     auto next = std::ranges::min_element(halved, std::less(),
                                          [](const Candidate& own) { return own.cost.all; });
     const bool is_better = next->cost.all < best.cost.all;
     if (!is_better) {
       if (in_vain == kHalvesInVain || !is_far_from_full(now.cost)) break;
-      next = halved.begin() + longest_of(now.partition.regions, halved);
-      if (next->partition.regions.empty()) break;
+      next = std::ranges::find_if(
+          halved, [](const Candidate& own) { return !own.partition.regions.empty(); });
+      if (next == halved.end()) break;
     }
     in_vain = is_better ? 0 : in_vain + 1;
     now = std::move(*next);
