@@ -58,7 +58,9 @@ test(`${JOBS} jobs outlive the loss of the primary`, options, async (t) => {
   farm.countEnds();
   const fronts = () => [farm.nodes.get("front-1"), farm.nodes.get("front-2")];
   const [front, other] = fronts();
-  const withKey = () => fetch(`${guarded.url}/v1/jobs`, { headers: { Authorization: `Bearer ${key}` } });
+  const free = farm.addKey("--name", "free", "--scopes", "read");
+  const jobsWith = (own) => fetch(`${guarded.url}/v1/jobs`, { headers: { Authorization: `Bearer ${own}` } });
+  const withKey = () => jobsWith(key);
 
   const begin = async (iterations, size) => {
     const { id } = await (await send(front, `/v1/jobs?preset=paper&stop.iterations=${iterations}`, { size })).json();
@@ -109,14 +111,15 @@ test(`${JOBS} jobs outlive the loss of the primary`, options, async (t) => {
   });
 
   await t.test("the rate of a key is enforced, from a full minute", async () => {
+    // A node may look for the new primary a little longer, and its answers of 503 count for their key.
+    for (const giveUp = Date.now() + 20_000; (await jobsWith(free)).status === 503; await sleep(50))
+      assert.ok(Date.now() < giveUp);
     const codes = [];
-    for (const giveUp = Date.now() + 20_000; Date.now() < giveUp; await sleep(50)) {
-      codes[0] = (await withKey()).status; // a node may look for the new primary a little longer
-      if (codes[0] !== 503) break;
-    }
-    for (let k = 1; k < RATE + 10; k++) codes.push((await withKey()).status);
-    assert.ok(codes.every((code) => [200, 429].includes(code)), String(codes));
-    assert.ok(codes.includes(429) && codes.filter((code) => code === 200).length >= RATE, String(codes));
+    let last;
+    for (let k = 0; k < RATE + 10; k++) codes.push((last = await withKey()).status);
+    const told = `${codes}; the last answer: ${await last.text()}`;
+    assert.ok(codes.every((code) => [200, 429].includes(code)), told);
+    assert.ok(codes.includes(429) && codes.filter((code) => code === 200).length >= RATE, told);
   });
 
   await farm.allEnd(60 + JOBS);
