@@ -252,9 +252,9 @@ constexpr std::array kRows = {
         "output", kEveryMethod,
         "Format of the result. auto: the format of the input, or GLB for STL, PLY and OFF, which "
         "are only read. "
-        "A result in another format than the input has no more than that format holds: geometry, "
-        "normals, texture coordinates and the colours of vertices, and in a glTF the materials of "
-        "an OBJ. A note tells what is lost."),
+        "Conversion to another kind of file keeps geometry, normals, texture coordinates and "
+        "colours of vertices, and from an OBJ to a glTF its materials; a note names what is lost. "
+        "GLB and glTF lose nothing to each other."),
     choice<&A::compression, kCompressions>(
         "compression", kEveryMethod,
         "Encoding of a glTF's geometry. keep: as in the input; none: uncompressed; meshopt: "

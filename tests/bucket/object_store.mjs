@@ -16,7 +16,7 @@ export class ObjectStore {
     for (const giveUp = Date.now() + SECONDS_TO_START * 1000; Date.now() < giveUp; await sleep(100)) {
       const answer = await fetch(this.endpoint, { signal: AbortSignal.timeout(5000) }).catch(() => undefined);
       if (answer && this.isReady(answer)) return;
-      if (this.gateway.exitCode !== null) break;
+      if (this.gateway.exitCode !== null || this.gateway.signalCode !== null) break;
     }
     throw new Error(`${this.name} does not answer; its log ends with\n${readFileSync(this.log, "utf8").slice(-2000)}`);
   }

@@ -1,5 +1,6 @@
-// Ports for servers that must be told their port before they start. The system never gives them to
-// anybody who asks for any port, so nobody takes one while its server is still starting.
+// Ports for servers that must be told their port before they start. They lie below those that the
+// system hands out by itself, so that no connection takes one while its server is starting. Other
+// processes of tests draw at random from the same range.
 import { randomInt } from "node:crypto";
 import { once } from "node:events";
 import { readFileSync } from "node:fs";
@@ -27,9 +28,8 @@ export async function freePort(count = 1) {
     const first = randomInt(LOWEST, firstOfTheSystem() - count);
     const ports = Array.from({ length: count }, (_, i) => first + i);
     if (ports.some((port) => given.has(port))) continue;
-    const free = await Promise.all(ports.map(isFree));
-    if (!free.every(Boolean)) continue;
     ports.forEach((port) => given.add(port));
-    return first;
+    const free = await Promise.all(ports.map(isFree));
+    if (free.every(Boolean)) return first;
   }
 }

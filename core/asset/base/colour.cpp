@@ -10,15 +10,15 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr Colour kUnknown = {kNone, kNone, kNone, kNone};
 constexpr std::size_t kAlpha = 3;
-constexpr float kMostShare = 2;  // some files have shares a little above 1
+constexpr float kLargestShare = 2;  // some files have shares a little above 1
 
-/// Whether the channels have a value that is no share.
-Untold have_bytes(const std::vector<Colour>& colours, const Untold& untold) {
-  Untold bytes{};
+std::array<bool, 4> channels_of_bytes(const std::vector<Colour>& colours,
+                                      const UnitUnknown& unit_unknown) {
+  std::array<bool, 4> of_bytes{};
   for (const Colour& colour : colours)
     for (std::size_t k = 0; k < colour.size(); ++k)
-      bytes[k] |= untold[k] && std::isfinite(colour[k]) && colour[k] > kMostShare;
-  return bytes;
+      of_bytes[k] |= unit_unknown[k] && std::isfinite(colour[k]) && colour[k] > kLargestShare;
+  return of_bytes;
 }
 
 }  // namespace
@@ -40,12 +40,12 @@ void add_colour(const std::optional<Colour>& colour, std::size_t vertex_count,
   colours.push_back(colour.value_or(kUnknown));
 }
 
-void to_shares(std::vector<Colour>& colours, const Untold& untold) {
-  const Untold bytes = have_bytes(colours, untold);
-  const bool is_any = std::ranges::any_of(bytes, [](bool own) { return own; });
+void normalize_colours(std::vector<Colour>& colours, const UnitUnknown& unit_unknown) {
+  const std::array<bool, 4> of_bytes = channels_of_bytes(colours, unit_unknown);
+  const bool is_any = std::ranges::any_of(of_bytes, [](bool own) { return own; });
   Colour unit{};
   for (std::size_t k = 0; k < unit.size(); ++k)
-    unit[k] = untold[k] && (k < kAlpha ? is_any : bytes[kAlpha]) ? 255 : 1;
+    unit[k] = unit_unknown[k] && (k < kAlpha ? is_any : of_bytes[kAlpha]) ? 255 : 1;
   for (Colour& colour : colours)
     for (std::size_t k = 0; k < unit.size(); ++k)
       colour[k] = std::clamp(colour[k] / unit[k], 0.0F, 1.0F);  // NaN stays

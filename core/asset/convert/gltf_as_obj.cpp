@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "core/asset/base/as_size.hpp"
 #include "core/asset/base/pace.hpp"
@@ -19,8 +20,8 @@
 namespace unwrapd::asset::convert {
 namespace {
 
-/// The accessor of a primitive's attribute, unless it is none that glTF allows. components: at
-/// least.
+/// The accessor of a triangle primitive's attribute; none if it has fewer components or a type that
+/// glTF does not allow.
 std::optional<std::size_t> accessor_of(const Gltf& gltf, const Primitive& primitive,
                                        std::string_view semantic, std::size_t components) {
   const auto found = std::ranges::find(primitive.attributes, semantic,
@@ -60,14 +61,14 @@ bool has_alpha(const Gltf& gltf, std::size_t accessor) {
 
 /// What the OBJ lacks of the glTF's colours.
 struct LackingColours {
-  bool others =
-      false;  ///< sets but the first, or colours of vertices that another primitive shares
+  /// Sets but the first, or colours of vertices that another primitive colours otherwise.
+  bool others = false;
   bool alpha = false;
 };
 
 LackingColours lacking_colours(const Gltf& gltf) {
   LackingColours lacking;
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> of_vertices;  // mesh, positions
+  std::map<std::pair<std::size_t, std::size_t>, std::optional<std::size_t>> of_vertices;
   std::set<std::size_t> seen;
   for (const Primitive& primitive : gltf.primitives) {
     const auto count = std::ranges::count_if(primitive.attributes, [](const auto& attribute) {
@@ -75,10 +76,10 @@ LackingColours lacking_colours(const Gltf& gltf) {
     });
     const auto own = accessor_of(gltf, primitive, "COLOR_0", 3);
     lacking.others |= count > (own ? 1 : 0);
-    if (!own) continue;
-    const std::pair vertices(primitive.mesh, primitive.position);
-    lacking.others |= of_vertices.try_emplace(vertices, *own).first->second != *own;
-    lacking.alpha = lacking.alpha || (seen.insert(*own).second && has_alpha(gltf, *own));
+    if (!primitive.has_triangles) continue;
+    const std::pair vertices(gltf.pieces[primitive.piece].surface, primitive.position);
+    lacking.others |= of_vertices.try_emplace(vertices, own).first->second != own;
+    lacking.alpha = lacking.alpha || (own && seen.insert(*own).second && has_alpha(gltf, *own));
   }
   return lacking;
 }
@@ -158,9 +159,11 @@ class ObjFromGltf {
 
   void read_colours(const Piece& piece, std::size_t accessor, std::vector<Colour>& colours) const {
     const Elements linear(gltf_, accessor);
+    std::vector<char> is_read(colours.size(), 0);
     for (std::size_t t = piece.first_face; t < piece.first_face + piece.face_count; ++t) {
       check_cancelled_every(t, gltf_.stop);
       for (const Index v : surfaces_[piece.surface].mesh.faces[t]) {
+        if (std::exchange(is_read[as_size(v)], 1) != 0) continue;
         const Index vertex = gltf_.vertices[piece.surface][as_size(v)];
         for (std::size_t k = 0; k < 3; ++k) {
           const double light = linear.component_of(as_size(vertex), k);

@@ -171,17 +171,18 @@ Json vec3_accessor(const std::vector<Float3>& values, NewViews& views) {
 }
 
 /// Linear in light, as glTF wants colours; 16 bits keep the 8 bits of sRGB.
-Json colour_accessor(const Vertices& vertices, NewViews& views) {
+Json colour_accessor(const Vertices& vertices, const std::stop_token& stop, NewViews& views) {
   constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
   std::vector<std::array<std::uint16_t, 4>> values;
   values.reserve(vertices.sources.size());
+  Pace pace(stop);
   for (const Index source : vertices.sources) {
+    pace.add(8);
     const Colour colour = as_shown(vertices.colours[as_size(source)]);
-    for (std::size_t k = 0; k < 4; ++k) {
-      const double value = k < 3 ? from_srgb(colour[k]) : colour[k];
-      if (k == 0) values.emplace_back();
-      values.back()[k] = static_cast<std::uint16_t>(std::lround(kMost * value));
-    }
+    auto& value = values.emplace_back();
+    for (std::size_t k = 0; k < value.size(); ++k)
+      value[k] = static_cast<std::uint16_t>(
+          std::lround(kMost * (k < 3 ? from_srgb(colour[k]) : colour[k])));
   }
   const std::string_view bytes(reinterpret_cast<const char*>(values.data()),
                                values.size() * sizeof(values.front()));
@@ -192,12 +193,14 @@ Json colour_accessor(const Vertices& vertices, NewViews& views) {
           {"type", "VEC4"}};
 }
 
-/// The primitives of all parts with faces.
-void add_primitives(const Vertices& vertices, const Json& attributes, const Gltf& empty,
-                    NewViews& views, Json& json) {
+/// The primitives of all parts with faces. Those whose material has an image go without colours: a
+/// glTF multiplies the two, while programs that read an OBJ show one of them.
+void add_primitives(const Vertices& vertices, const obj::Obj* obj, const Json& attributes,
+                    const Gltf& empty, NewViews& views, Json& json) {
   Json& accessors = json["accessors"];
   for (const auto& [part, corners] : vertices.corners) {
     Json primitive = {{"attributes", attributes}, {"indices", accessors.size()}};
+    if (obj != nullptr && obj::has_image(*obj, part)) primitive["attributes"].erase("COLOR_0");
     accessors.push_back(index_accessor(empty, std::nullopt, corners, views));
     json["meshes"][0]["primitives"].push_back(std::move(primitive));
   }
@@ -216,7 +219,7 @@ Json add_vertices(const std::vector<Float3>& positions, const Vertices& vertices
   }
   if (!vertices.colours.empty()) {
     attributes["COLOR_0"] = accessors.size();
-    accessors.push_back(colour_accessor(vertices, views));
+    accessors.push_back(colour_accessor(vertices, empty.stop, views));
   }
   if (!vertices.old_uv.empty()) {
     attributes["TEXCOORD_1"] = 1;
@@ -226,22 +229,11 @@ Json add_vertices(const std::vector<Float3>& positions, const Vertices& vertices
   return attributes;
 }
 
-/// Takes colours from primitives whose material has an image: a glTF multiplies the two, while
-/// programs that read an OBJ show one of them.
-void show_images_alone(Json& json) {
-  for (Json& primitive : json["meshes"][0]["primitives"]) {
-    const auto material = primitive.find("material");
-    if (material == primitive.end()) continue;
-    const Json& own = json["materials"][material->get<std::size_t>()];
-    const auto surface = own.find("pbrMetallicRoughness");
-    if (surface != own.end() && surface->contains("baseColorTexture"))
-      primitive["attributes"].erase("COLOR_0");
-  }
-}
-
 /// obj: null for a format without materials.
-std::string write_gltf(const TriMesh& mesh, const Vertices& vertices, const obj::Obj* obj,
+std::string write_gltf(const TriMesh& mesh, Vertices vertices, const obj::Obj* obj,
                        const std::stop_token& stop, Format output) {
+  const auto has_image = [&](const auto& own) { return obj::has_image(*obj, own.first); };
+  if (obj != nullptr && std::ranges::all_of(vertices.corners, has_image)) vertices.colours = {};
   const Vec3 origin = float_frame(mesh, stop).origin;
   const std::vector<Float3> positions = positions_from(origin, mesh, vertices.sources);
   Gltf empty;
@@ -256,13 +248,10 @@ std::string write_gltf(const TriMesh& mesh, const Vertices& vertices, const obj:
   NewViews views(document, 0);
   const Json attributes =
       add_vertices(positions, vertices, empty, views, document.json["accessors"]);
-  add_primitives(vertices, attributes, empty, views, document.json);
+  add_primitives(vertices, obj, attributes, empty, views, document.json);
   std::vector<Index> parts;
   for (const auto& [part, corners] : vertices.corners) parts.push_back(part);
-  if (obj != nullptr) {
-    obj::add_materials(*obj, parts, views, document.json);
-    show_images_alone(document.json);
-  }
+  if (obj != nullptr) obj::add_materials(*obj, parts, views, document.json);
   return writer::assemble(empty, std::move(document), output);
 }
 

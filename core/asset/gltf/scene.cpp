@@ -35,14 +35,15 @@ Eigen::Matrix3d areas_by_direction(const TriMesh& mesh) {
   return sum;
 }
 
-/// How many times its area a mesh has there, by the mean square over its faces.
-double area_shown(const Placement& placement, const Eigen::Matrix3d& areas) {
+/// See ScaledPlacement.
+double area_ratio(const Placement& placement, const Eigen::Matrix3d& areas) {
   const Eigen::Matrix3d cofactor = placement.cofactors();
   return std::sqrt((cofactor * areas * cofactor.transpose()).trace() / areas.trace());
 }
 
-void keep_larger(const Shown& own, std::optional<Shown>& largest) {
-  if (!largest || own.area > largest->area) largest = own;
+/// A ratio of an area of 0 is no number, and larger than none.
+void keep_larger(const ScaledPlacement& own, std::optional<ScaledPlacement>& largest) {
+  if (own.area_ratio > (largest ? largest->area_ratio : -1.0)) largest = own;
 }
 
 }  // namespace
@@ -72,23 +73,23 @@ std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surfac
   return placements;
 }
 
-std::vector<std::optional<Shown>> largest_shown(const Gltf& gltf,
-                                                std::span<const Surface> surfaces) {
+std::vector<std::optional<ScaledPlacement>> largest_shown(const Gltf& gltf,
+                                                          std::span<const Surface> surfaces) {
   const auto of_mesh = surfaces_of_meshes(gltf);
   std::vector<Eigen::Matrix3d> areas;
   for (const Surface& surface : surfaces) areas.push_back(areas_by_direction(surface.mesh));
   std::vector<Eigen::Matrix3d> areas_of_mesh(of_mesh.size(), Eigen::Matrix3d::Zero());
   for (std::size_t mesh = 0; mesh < of_mesh.size(); ++mesh)
     for (const std::size_t s : of_mesh[mesh]) areas_of_mesh[mesh] += areas[s];
-  std::vector<std::optional<Shown>> by_mesh(of_mesh.size()), largest(surfaces.size());
+  std::vector<std::optional<ScaledPlacement>> by_mesh(of_mesh.size()), largest(surfaces.size());
   for (const auto& [mesh, placement] : gltf.mesh_nodes)
     if (mesh < of_mesh.size())
-      keep_larger({placement, area_shown(placement, areas_of_mesh[mesh])}, by_mesh[mesh]);
+      keep_larger({placement, area_ratio(placement, areas_of_mesh[mesh])}, by_mesh[mesh]);
   for (std::size_t mesh = 0; mesh < of_mesh.size(); ++mesh) {
     if (!by_mesh[mesh]) continue;
     const Placement& placement = by_mesh[mesh]->placement;
     for (const std::size_t s : of_mesh[mesh])
-      keep_larger({placement, area_shown(placement, areas[s])}, largest[s]);
+      keep_larger({placement, area_ratio(placement, areas[s])}, largest[s]);
   }
   return largest;
 }

@@ -19,16 +19,18 @@ std::vector<ShownSurface> shown_by_nodes(const Gltf& gltf, std::span<const Surfa
 /// One a surface: where the first node shows it; as it is, where none does.
 std::vector<Placement> first_placements(const Gltf& gltf, std::span<const Surface> surfaces);
 
-/// A placement that shows a surface.
-struct Shown {
+/// How a node shows a surface.
+struct ScaledPlacement {
   Placement placement;
-  double area = 0;  ///< of the surface there, in shares of its own, by the rms over its faces
+  double area_ratio =
+      0;  ///< area in the scene over the mesh's own, root mean square over its faces
 };
 
-/// One a surface: the placement that shows it largest, or none. Of a mesh, the node that shows all
-/// its surfaces largest counts, so that nodes and surfaces do not multiply.
-std::vector<std::optional<Shown>> largest_shown(const Gltf& gltf,
-                                                std::span<const Surface> surfaces);
+/// One a surface: how the node that shows it largest does, if any. First, for each mesh, the node
+/// that shows the whole mesh largest is chosen, so that the cost is nodes + surfaces, not their
+/// product.
+std::vector<std::optional<ScaledPlacement>> largest_shown(const Gltf& gltf,
+                                                          std::span<const Surface> surfaces);
 
 /// How many nodes show nothing but surfaces that nodes before them show.
 std::size_t repeated_nodes(const Gltf& gltf);

@@ -17,8 +17,8 @@ namespace unwrapd::asset {
 namespace {
 
 constexpr double kLeastShare = 0.05;    // of the area, that must be stretched
-constexpr double kLeastSine = 1e-5;     // of a face's corner; flatter ones tell nothing
-constexpr double kLeastArea = 1e-9;     // of a face, in shares of its own: others look at nobody
+constexpr double kLeastSine = 1e-5;     // of a corner's angle; thinner faces are ignored
+constexpr double kLeastArea = 1e-9;     // in shares of a face's own; less is seen edge-on
 constexpr double kEqualStretch = 1e-6;  // relative, of maps that keep all shapes
 constexpr std::size_t kMostNamed = 5;
 
@@ -72,7 +72,7 @@ std::string named(const Surface& surface, double stretch) {
 }  // namespace
 
 std::vector<Note> notes_on_stretched(const Gltf& gltf, std::span<const Surface> surfaces) {
-  const std::vector<std::optional<Shown>> shown = largest_shown(gltf, surfaces);
+  const std::vector<std::optional<ScaledPlacement>> shown = largest_shown(gltf, surfaces);
   std::string names;
   std::size_t count = 0;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -84,9 +84,7 @@ std::vector<Note> notes_on_stretched(const Gltf& gltf, std::span<const Surface> 
   if (count == 0) return {};
   if (count > kMostNamed) names += " and " + std::to_string(count - kMostNamed) + " more";
   return {{NoteCode::nodes_stretch,
-           "Nodes make these meshes longer in one direction than in another, and stretch the "
-           "texture with them: " +
-               names +
+           "Nodes scale these meshes unevenly, which stretches their textures: " + names +
                ". Apply the scale of the nodes to the meshes (in Blender: Object, Apply, Scale) "
                "and send the asset again."}};
 }

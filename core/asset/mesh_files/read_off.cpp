@@ -98,7 +98,7 @@ class OffReader {
       if (keyword_.has_normals) file_.normals.push_back(read_vec3());
       read_colour();
     }
-    to_shares(file_.colours);
+    normalize_colours(file_.colours);
   }
 
   /// Three or four numbers after the position and the normal. Texture coordinates would follow the

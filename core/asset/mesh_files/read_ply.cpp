@@ -58,7 +58,7 @@ constexpr std::array<RoleName, 21> kRoleNames = {{{"x", kX},
                                                   {"diffuse_green", kGreen},
                                                   {"diffuse_blue", kBlue}}};
 
-/// Roles that mean something together only; those after `needed` may be missing.
+/// Roles from first to needed are used only if all are there; those up to last are optional.
 struct RoleGroup {
   Role first, needed, last;
 };
@@ -118,7 +118,8 @@ class PlyReader {
     for (const RoleGroup& group : kGroups) {
       const auto count = std::ranges::count_if(
           roles, [&](Role role) { return role >= group.first && role <= group.needed; });
-      if (static_cast<std::size_t>(count) <= group.needed - group.first)
+      const std::size_t wanted = group.needed - group.first + 1;
+      if (static_cast<std::size_t>(count) < wanted)
         std::ranges::replace_if(
             roles, [&](Role role) { return role >= group.first && role <= group.last; }, kRoles);
     }
@@ -142,16 +143,16 @@ class PlyReader {
       if (has_uv) file_.uv.emplace_back(row[kU], row[kV]);
       if (has_colours) file_.colours.push_back(colour_of(row, has(kAlpha)));
     }
-    to_shares(file_.colours, untold_of(element, roles));
+    normalize_colours(file_.colours, unit_unknown_of(element, roles));
   }
 
   /// Channels whose type tells no unit.
-  static Untold untold_of(const PlyElement& element, const std::vector<Role>& roles) {
-    Untold untold{};
+  static UnitUnknown unit_unknown_of(const PlyElement& element, const std::vector<Role>& roles) {
+    UnitUnknown unit_unknown{};
     for (std::size_t p = 0; p < roles.size(); ++p)
       if (roles[p] >= kRed && roles[p] <= kAlpha)
-        untold[roles[p] - kRed] = is_of_floats(element.properties[p].type);
-    return untold;
+        unit_unknown[roles[p] - kRed] = is_of_floats(element.properties[p].type);
+    return unit_unknown;
   }
 
   static bool is_of_floats(PlyType type) { return type == PlyType::f32 || type == PlyType::f64; }

@@ -206,14 +206,13 @@ void take_images(const SentFiles& files, Obj& obj) {
 /// What of the OBJ's text, beside its materials, a glTF of it does not have.
 std::string dropped_parts(const Obj& obj) {
   const auto is_line = [](const Element& element) { return element.keyword == 'l'; };
-  bool has_image = false;
-  for_each_look(obj,
-                [&](const MtlMaterial& look) { has_image |= is_usable(obj, look.colour_map); });
+  bool is_image = false;
+  for_each_look(obj, [&](const MtlMaterial& own) { is_image |= is_usable(obj, own.colour_map); });
   std::string text;
   const auto add = [&](bool holds, const char* what) {
     if (holds) text += (text.empty() ? "" : ", ") + std::string(what);
   };
-  add(!obj.colours.empty() && has_image, "colours of vertices where the material has an image");
+  add(!obj.colours.empty() && is_image, "colours of vertices where the material has an image");
   add(std::ranges::any_of(obj.elements, is_line), "lines");
   add(obj.has_points, "points");
   add(obj.has_names, "names of objects and groups");
@@ -248,6 +247,11 @@ bool keeps_texcoords(const Obj& obj, const AssetOptions& options) {
     for (const std::string* map : maps_of(look)) has_textures |= is_usable(obj, *map);
   });
   return has_textures;
+}
+
+bool has_image(const Obj& obj, Index part) {
+  const auto look = obj.looks.find(obj.materials[as_size(part)]);
+  return look != obj.looks.end() && is_usable(obj, look->second.colour_map);
 }
 
 void add_materials(const Obj& obj, std::span<const Index> parts, NewViews& views, Json& json) {

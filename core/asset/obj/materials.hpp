@@ -19,6 +19,9 @@ void read_materials(const Input& input, Obj& obj);
 /// coordinates as TEXCOORD_0 and the new ones as TEXCOORD_1.
 bool keeps_texcoords(const Obj& obj, const AssetOptions& options);
 
+/// Whether the material of a part has an image as its colour.
+bool has_image(const Obj& obj, Index part);
+
 /// Sets materials, textures and images of the document, and the materials of its primitives.
 /// parts: of each primitive of the one mesh.
 void add_materials(const Obj& obj, std::span<const Index> parts, NewViews& views, Json& json);

@@ -53,7 +53,7 @@ struct Obj {
   MtlLibrary looks;                    ///< materials of those that were sent
   std::map<std::string, std::string> images;  ///< sent ones that these use, by their paths
   std::vector<FileRepair> repairs;
-  std::vector<Colour> colours;  ///< one a vertex, white where it has none; empty if none has
+  std::vector<Colour> colours;  ///< one a vertex, NaN where it has none; empty if none has
   bool has_names = false;       ///< of objects or groups
   bool has_points = false;
   std::stop_token stop;  ///< of the job, for reading and writing

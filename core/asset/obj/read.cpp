@@ -43,7 +43,7 @@ class ObjReader {
     }
     obj_.materials.resize(part_of_.size());
     for (const auto& [name, part] : part_of_) obj_.materials[as_size(part)] = name;
-    to_shares(obj_.colours);
+    normalize_colours(obj_.colours);
     check_indices();
     triangulate_faces();
     note(FileRepairKind::line_ends_replaced, line_ends_);

@@ -15,7 +15,8 @@ void append_vt(std::string& out, const Vec2& uv);
 
 void append_vn(std::string& out, const Vec3& normal);
 
-/// colour: null for none, else as_shown(); an OBJ has no place for its alpha.
+/// colour: null for none; channels that are not known are written as 1. An OBJ has no place for
+/// alpha.
 void append_v(std::string& out, const Vec3& position, const Colour* colour);
 
 }  // namespace unwrapd::asset::obj

@@ -13,9 +13,10 @@ namespace {
 constexpr double kLeastScale = 1e-12;  ///< of a flat mesh that a node shows from its edge, less
 constexpr double kRounding = 1e-5;     ///< of scales by products of floats
 
-/// Exact for one scale in all directions, and for a plane.
-std::optional<double> scale_of(const Shown& shown) {
-  const double scale = std::sqrt(shown.area);
+/// The scale of lengths: the root of the area ratio. It is exact for a uniform scale and for a
+/// plane.
+std::optional<double> scale_of(const ScaledPlacement& shown) {
+  const double scale = std::sqrt(shown.area_ratio);
   if (!(scale >= kLeastScale)) return std::nullopt;
   return std::abs(scale - 1) <= kRounding ? 1 : scale;
 }
@@ -23,7 +24,7 @@ std::optional<double> scale_of(const Shown& shown) {
 }  // namespace
 
 void set_scales(const Gltf& gltf, std::vector<Surface>& surfaces) {
-  const std::vector<std::optional<Shown>> shown = largest_shown(gltf, surfaces);
+  const std::vector<std::optional<ScaledPlacement>> shown = largest_shown(gltf, surfaces);
   std::vector<std::optional<double>> scales(surfaces.size());
   std::optional<double> least;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {

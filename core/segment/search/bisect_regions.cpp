@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kHalvesInVain = 4;  // that are tried where a page is far from full
 constexpr double kMuchEmptiness = 0.2;
-constexpr double kNearlyAsLong = 0.7;
+constexpr double kNearlyAsLong = 0.7;  // of the longest region
 
 /// Of the box of a region's map.
 double longer_side(const Region& region) {
@@ -32,8 +32,8 @@ double longer_side(const Region& region) {
   return (high - low).maxCoeff();
 }
 
-/// The longest region and those nearly as long, the longest first. The halves of a shorter one make
-/// no page smaller that has to hold the longest.
+/// The longest region and those nearly as long, the longest first. Halving a shorter one cannot
+/// shrink the page: the longest still has to fit.
 std::vector<std::size_t> long_regions(const std::vector<MappedRegion>& regions) {
   std::vector<double> side;
   for (const MappedRegion& region : regions) side.push_back(rounded(longer_side(region)));
