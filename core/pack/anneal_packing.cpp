@@ -16,6 +16,7 @@
 #include <numeric>
 
 #include "core/base/splitmix64.hpp"
+#include "core/pack/box.hpp"
 #include "core/pack/page_grid.hpp"
 
 namespace unwrapd::pack {
@@ -170,7 +171,7 @@ std::vector<Arrangement> usual_arrangements(const BottomLeftPlacer& placer) {
                             std::vector<int>(placer.size(), kAnyTurn)};
     std::iota(arrangement.order.begin(), arrangement.order.end(), 0);
     const auto size = [&](Index k) {
-      return measure(placer.box(static_cast<std::size_t>(k)).size);
+      return size_rank(measure(placer.box(static_cast<std::size_t>(k)).size));
     };
     std::stable_sort(arrangement.order.begin(), arrangement.order.end(),
                      [&](Index a, Index b) { return size(a) > size(b); });

@@ -22,6 +22,10 @@ struct Box {
   }
 };
 
+/// What islands are ordered by: sizes that differ by rounding alone tie, and ties are broken by
+/// number, so that a mesh moved or scaled is packed in the same way.
+inline float size_rank(double size) { return static_cast<float>(size); }
+
 /// The corners of the convex hull, counter-clockwise from the leftmost, without points inside a
 /// side. One or two points if there are no more.
 UvMap convex_hull(UvMap points);

@@ -17,6 +17,7 @@
 
 #include "core/base/cancel.hpp"
 #include "core/base/splitmix64.hpp"
+#include "core/pack/box.hpp"
 #include "core/pack/page_grid.hpp"
 #include "core/pack/row_prefix_sums.hpp"
 
@@ -75,7 +76,7 @@ class Page {
     std::vector<std::size_t> by_size(count_);
     std::iota(by_size.begin(), by_size.end(), 0);
     std::ranges::stable_sort(by_size, std::greater(),
-                             [&](std::size_t k) { return placer_.box(k).size.prod(); });
+                             [&](std::size_t k) { return size_rank(placer_.box(k).size.prod()); });
     const auto large = [&] {
       return by_size[std::min(sequence_.below(count_), sequence_.below(count_))];
     };

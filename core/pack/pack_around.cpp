@@ -213,8 +213,9 @@ std::vector<std::size_t> well_placed(std::span<const charts::Outline> islands,
                                      const PageOptions& page, const std::stop_token& stop) {
   std::vector<std::size_t> order(islands.size()), well;
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(),
-                           [&](std::size_t k) { return std::abs(charts::area_of(islands[k])); });
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t k) {
+    return size_rank(std::abs(charts::area_of(islands[k])));
+  });
   const double padding = static_cast<double>(page.padding) / page.resolution - kRoundingOfUvs;
   std::vector<BoundedOutline> there;
   for (const charts::Outline& own : locked) there.emplace_back(own);

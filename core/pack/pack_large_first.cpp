@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/pack/box.hpp"
 #include "core/pack/pack_around.hpp"
 #include "core/pack/pack_few.hpp"
 #include "core/pack/page_grid.hpp"
@@ -32,7 +33,8 @@ BySize by_size(std::span<const charts::Outline> islands, double share, std::size
   for (const charts::Outline& own : islands) area.push_back(std::abs(charts::area_of(own)));
   std::vector<std::size_t> order(islands.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(), [&](std::size_t k) { return area[k]; });
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](std::size_t k) { return size_rank(area[k]); });
   double missing = share * std::accumulate(area.begin(), area.end(), 0.0);
   BySize sizes;
   for (const std::size_t k : order) {

@@ -86,7 +86,7 @@ Layout lay_rows(std::vector<Box> boxes, const RowPage& page) {
   layout.order.resize(layout.boxes.size());
   std::iota(layout.order.begin(), layout.order.end(), 0);
   std::stable_sort(layout.order.begin(), layout.order.end(), [&](Index a, Index b) {
-    return layout.boxes[a].size.y() > layout.boxes[b].size.y();
+    return size_rank(layout.boxes[a].size.y()) > size_rank(layout.boxes[b].size.y());
   });
   double too_large = scale_bound(layout.boxes, page) * kSlack;
   layout.scale = too_large;
