@@ -148,9 +148,11 @@ constexpr std::array kRows = {
         "above 2. Surfaces are split into charts until it holds. Lower "
         "values result in more charts. Unset: unlimited for a disk, else "
         "2.02."),
-    figure<&O::max_charts>("max_charts", {1, kMaxCharts}, kEveryMethod,
-                           "The most charts, at any distortion, where topology allows it. Lower "
-                           "values result in fewer charts with more distortion. Unset: unlimited."),
+    figure<&O::max_charts>(
+        "max_charts", {1, kMaxCharts}, kEveryMethod,
+        "The most charts, at any distortion; each component is one at least. Lower values "
+        "result in fewer charts, which hang together by parts of their borders, and "
+        "in more distortion where that is not enough. Unset: unlimited."),
     choice<&O::symmetry, kSymmetries>(
         "symmetry", kEveryMethod,
         "auto: seams of a surface with a mirror plane, which is detected, are symmetric; off: "

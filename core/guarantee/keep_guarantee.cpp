@@ -138,7 +138,7 @@ bool unfold(GuaranteedPart& part, double unit, const GuaranteeRules& rules) {
   const solve::repair::MapIntent& intent = rules.intent;
   const solve::Disk disk = solve::make_disk(part.chart->mesh, part.chart->loops, intent.stop);
   UvMap uv = part.uv;
-  if (!solve::repair::map_injectively(disk, intent, uv)) return false;
+  if (!solve::repair::map_injectively(disk, intent, uv, part.chart->start)) return false;
   const bool is_bounded = rules.most_rise < kUnbounded;
   UvMap before = is_bounded ? part.uv : UvMap();
   for (Vec2& u : before) u *= unit / disk.unit;

@@ -10,6 +10,7 @@
 #include "core/segment/large_charts.hpp"
 #include "core/segment/region_charts.hpp"
 #include "core/segment/segment_symmetrically.hpp"
+#include "core/segment/settle_forced.hpp"
 #include "core/segment/tighten.hpp"
 #include "core/segment/whole_chart.hpp"
 
@@ -33,11 +34,12 @@ class ComponentSearch {
     std::vector<charts::Chart> parts;
     if (given_.may_stay_whole) parts = kept_whole(rules);
     if (parts.empty()) parts = segmented_charts(rules);
-    return {std::move(parts), is_rough_};
+    return {settle_forced(component_, std::move(parts), rules.stop), is_rough_};
   }
 
  private:
-  /// A bound below kDefaultDistortion is reached from that, step by step (ADR 0066).
+  /// A bound below kDefaultDistortion is reached from that, step by step (ADR 0066), unless there
+  /// are already as many charts as there may be.
   std::vector<charts::Chart> segmented_charts(SegmentRules rules) {
     const TightBounds tight = tight_bounds(rules.max_distortion, rules.effort);
     const auto searches = static_cast<double>(tight.searched.size() + 1);
@@ -45,6 +47,7 @@ class ComponentSearch {
     std::vector<charts::Chart> parts;
     if (given_.may_stay_whole && tight.count > 0) parts = kept_whole(rules);
     if (parts.empty()) parts = parts_of(for_part_of_work(rules, 0, 1 / searches));
+    if (std::cmp_greater_equal(parts.size(), rules.most_regions)) return parts;
     const bool was_rough = std::exchange(is_rough_, false);
     std::vector<std::vector<charts::Chart>> found;
     for (const double bound : tight.searched) {

@@ -10,6 +10,7 @@
 #include "core/segment/large_charts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -137,6 +138,7 @@ class Search {
   void begin(std::size_t steps, bool is_quick, double end) {
     SegmentRules rules = rules_;
     rules.is_quick = is_quick;
+    if (is_quick) rules.most_regions = std::numeric_limits<Index>::max();
     rules.on_progress = [this, begin = done_, end](Stage stage, double share) {
       done_ = begin + share * (end - begin);
       if (rules_.on_progress) rules_.on_progress(stage, done_);

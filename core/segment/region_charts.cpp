@@ -19,16 +19,19 @@ namespace {
 struct Seamed {
   std::vector<CornerUv> uv;  ///< one a face: of its region's map
   std::vector<char> seam;    ///< one a half-edge, 1: open, or between regions
+  std::vector<char> forced;  ///< one a face: its region is (Region::is_forced)
 };
 
 Seamed seamed(const Halfedges& halfedges, const Segments& segments) {
   const std::vector<Region>& regions = segments.regions;
   std::vector<Index> owner(halfedges.twin.size() / 3);
-  Seamed seamed{std::vector<CornerUv>(owner.size()), segments.open};
+  Seamed seamed{std::vector<CornerUv>(owner.size()), segments.open,
+                std::vector<char>(owner.size(), 0)};
   for (std::size_t k = 0; k < regions.size(); ++k)
     for (std::size_t i = 0; i < regions[k].faces.size(); ++i) {
       owner[regions[k].faces[i]] = static_cast<Index>(k);
       seamed.uv[regions[k].faces[i]] = regions[k].uv[i];
+      seamed.forced[regions[k].faces[i]] = regions[k].is_forced ? 1 : 0;
     }
   for (std::size_t h = 0; h < halfedges.twin.size(); ++h) {
     const Index twin = halfedges.twin[h];
@@ -119,7 +122,7 @@ SegmentRules rules_of_chart(SegmentRules rules, const charts::Chart& component,
 }
 
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Segments& segments) {
-  const auto [uv, seam] = seamed(component.halfedges, segments);
+  const auto [uv, seam, forced] = seamed(component.halfedges, segments);
   Halfedges cut = component.halfedges;
   for (std::size_t h = 0; h < cut.twin.size(); ++h)
     if (seam[h] != 0) cut.twin[h] = kNoTwin;
@@ -129,7 +132,7 @@ std::vector<charts::Chart> region_charts(const charts::Chart& component, const S
     for (std::size_t t = 0; t < part.face.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
         part.chart.start[part.chart.mesh.faces[t][i]] = uv[part.face[t]][i];
-    part.chart.least = Guarantee::bijective;
+    if (forced[part.face.front()] == 0) part.chart.least = Guarantee::bijective;
     charts.push_back(std::move(part.chart));
   }
   return charts;
@@ -137,13 +140,13 @@ std::vector<charts::Chart> region_charts(const charts::Chart& component, const S
 
 std::vector<charts::Chart> region_charts(const charts::Chart& component, const Coarse& coarse,
                                          const Segments& segments, const std::stop_token& stop) {
-  const auto [uv, seam] = seamed(coarse.halfedges, segments);
+  const auto [uv, seam, forced] = seamed(coarse.halfedges, segments);
   const TransferredSeams transferred =
       transfer_seams(component.mesh, component.halfedges, coarse, seam, stop);
   std::vector<charts::Chart> charts;
   for (charts::ChartPart& part : charts::parts_of(component, transferred.cut, stop)) {
     part.chart.start = transferred_map(part, coarse, uv, transferred.near, stop);
-    part.chart.least = Guarantee::bijective;
+    if (forced[transferred.near[part.face.front()]] == 0) part.chart.least = Guarantee::bijective;
     charts.push_back(std::move(part.chart));
   }
   return charts;

@@ -15,6 +15,7 @@
 #include <span>
 #include <utility>
 
+#include "core/segment/map_anyhow.hpp"
 #include "core/segment/search/over_segment.hpp"
 #include "core/segment/search/partition_cost.hpp"
 #include "core/segment/search/shorten_seams.hpp"
@@ -38,8 +39,13 @@ Partition merge_to_limit(const MergeContext& context, Partition partition, Index
   if (partition.regions.size() <= static_cast<std::size_t>(most_regions)) return partition;
   MergeSettings settings = kWhateverDistortion;
   settings.enough = most_regions;
-  return merge_regions({context.surface, nullptr, nullptr, context.stop}, Joiner(context.surface),
-                       std::move(partition), settings, executor);
+  const MergeContext own{context.surface, nullptr, nullptr, context.stop};
+  const Joiner joiner(context.surface);
+  partition = merge_regions(own, joiner, std::move(partition), settings, executor);
+  settings.anyhow = [&](std::span<const char> open, Region& region) {
+    return map_anyhow(context.surface, open, context.stop, region);
+  };
+  return merge_regions(own, joiner, std::move(partition), settings, executor);
 }
 
 }  // namespace

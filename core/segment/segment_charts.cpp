@@ -2,9 +2,8 @@
 // purpose, or what needs no seam, and stays one chart unless a bound of distortion is asked for.
 // Everything else needs seams anyway, and then the best ones. So does a disk whose boundary is a
 // mere puncture: by the isoperimetric inequality it would have to be drawn out tenfold to enclose
-// the disk's area. Of a component that shall be one chart, the search's only chart is taken, or
-// else it is cut to a disk, however distorted. So is one of which merging leaves too many charts,
-// if the disk has a sound map.
+// the disk's area. A component that shall be one chart without a bound is cut to a disk. So is one
+// of which merging leaves too many charts, if the disk has a sound map.
 #include "core/segment/segment_charts.hpp"
 
 #include <algorithm>
@@ -25,10 +24,9 @@
 namespace unwrapd::segment {
 namespace {
 
-constexpr double kLeastOpenness = 0.01;   // 1 / 10^2
-constexpr double kShareOfFirst = 0.25;    // of the work, to share charts out
-constexpr double kMostOfCut = 100;        // distortion of a chart instead of too many
-constexpr Index kMostFacesOfOne = 20000;  // of a component that is searched for a single chart
+constexpr double kLeastOpenness = 0.01;  // 1 / 10^2
+constexpr double kShareOfFirst = 0.25;   // of the work, to share charts out
+constexpr double kMostOfCut = 100;       // distortion of a chart instead of too many
 
 /// The square of how long the boundary is beside that of a flat round disk of the same area.
 double openness(const charts::Chart& component) {
@@ -58,8 +56,7 @@ class Cutter {
   [[nodiscard]] bool is_segmented(const charts::Chart& component, Index most) const {
     if (options_.one_chart_each) return false;
     const bool is_disk = charts::is_disk(component);
-    if (is_one(most))
-      return !is_disk && options_.max_distortion && component.mesh.face_count() <= kMostFacesOfOne;
+    if (is_one(most)) return options_.max_distortion.has_value();
     return !is_disk || options_.max_distortion || openness(component) < kLeastOpenness;
   }
 
@@ -67,7 +64,7 @@ class Cutter {
     const bool has_bound = options_.max_distortion && !is_one(most);
     const double bound = has_bound ? *options_.max_distortion : kDefaultDistortion;
     SegmentRules rules = account_.rules(bound, component, scale_);
-    if (!is_one(most)) rules.most_regions = most;
+    rules.most_regions = most;
     rules.effort = options_.effort;
     const bool may_stay = charts::is_disk(component) && openness(component) >= kLeastOpenness;
     return {rules, options_.symmetry, may_stay};
@@ -198,12 +195,23 @@ std::size_t count_of(const std::vector<charts::Charts>& surfaces) {
   return components;
 }
 
-/// One chart for each component; what is left of `most` goes by how many they would like.
+/// One chart for each component; what is left of `most` goes by how many they would like, and what
+/// rounding leaves of that to those that are furthest from it.
 Quotas shared_out(const Cuts& wanted, Index most) {
   Quotas quotas{wanted.became, wanted.charts() <= most};
   const auto count = static_cast<Index>(quotas.most.size());
   const std::int64_t spare = std::max(most - count, 0), all = std::max(wanted.charts() - count, 1);
-  for (Index& own : quotas.most) own = 1 + static_cast<Index>(spare * (own - 1) / all);
+  std::vector<std::pair<std::int64_t, std::size_t>> missing;  // less than one chart, component
+  std::int64_t left = spare;
+  for (std::size_t k = 0; k < quotas.most.size(); ++k) {
+    const std::int64_t share = spare * (wanted.became[k] - 1);
+    quotas.most[k] = 1 + static_cast<Index>(share / all);
+    left -= share / all;
+    missing.emplace_back(-(share % all), k);
+  }
+  std::ranges::sort(missing);
+  for (std::int64_t k = 0; k < left; ++k)
+    ++quotas.most[missing[static_cast<std::size_t>(k)].second];
   return quotas;
 }
 
@@ -237,8 +245,7 @@ Cuts cut_to_most(std::vector<charts::Charts>& surfaces, const SegmentOptions& op
 Note more_than_asked(Index charts, Index components) {
   return {NoteCode::charts_exceeded,
           "The surface needs more charts than max_charts: " + std::to_string(charts) +
-              ", because the mesh has " + std::to_string(components) +
-              " components, and no two remaining charts have a common map without overlaps."};
+              ", because the mesh has " + std::to_string(components) + " components."};
 }
 
 Note rough_surfaces(Index count) {

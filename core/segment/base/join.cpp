@@ -14,8 +14,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "core/base/cancel.hpp"
@@ -36,6 +38,8 @@ constexpr std::size_t kManyFaces = 1000;   // faces
 constexpr std::size_t kSmall = 8;          // times fewer faces than a large region
 constexpr double kMostCovered = 0.5;       // of a small region
 constexpr std::size_t kFewFaces = 4;       // tell too little of what is covered
+constexpr std::size_t kPartsTried = 4;     // of a stretch, of each length
+constexpr std::size_t kEdgesTried = 8;     // of a border
 
 /// Whether hardly any map of both would be sound. area: of both; length: of the border.
 bool is_hopeless(const RegionPair& pair, const Placement& placement, std::span<const char> open,
@@ -44,6 +48,14 @@ bool is_hopeless(const RegionPair& pair, const Placement& placement, std::span<c
     return true;
   return pair.b().faces.size() >= kFewFaces && is_small_beside(pair.b(), pair.a()) &&
          pair.covered(placement, open) > kMostCovered;
+}
+
+std::vector<Index> without(std::span<const Index> sides, std::span<const Index> some) {
+  const std::set<Index> left_out(some.begin(), some.end());
+  std::vector<Index> rest;
+  for (const Index h : sides)
+    if (!left_out.contains(h)) rest.push_back(h);
+  return rest;
 }
 
 }  // namespace
@@ -76,6 +88,15 @@ Joiner::Joiner(const SegmentationMesh& surface) : surface_(surface) {
     for (std::size_t i = 0; i < 3; ++i)
       defect[surface.mesh.faces[t][(i + 2) % 3]] -= std::atan2(1.0, surface.rest[t].cot[i]);
   for (const double d : defect) is_flat_.push_back(std::abs(d) <= kFlatDefect ? 1 : 0);
+}
+
+std::vector<Index> Joiner::both_sides(std::span<const Index> border) const {
+  std::vector<Index> both;
+  for (const Index h : border) {
+    both.push_back(h);
+    both.push_back(surface_.halfedges.twin[h]);
+  }
+  return both;
 }
 
 double Joiner::length_of(std::span<const Index> border) const {
@@ -140,6 +161,90 @@ Joined Joiner::join(const MappedRegion& a, const MappedRegion& b, std::span<cons
   const Joined whole = joined;
   attempt(glued, cut);
   return joined.region.is_sound ? joined : whole;
+}
+
+/// The longest stretch of the border, as a walk along it.
+std::vector<Index> Joiner::longest_stretch(std::span<const Index> border) const {
+  std::vector<Index> stretch = without(border, slit_of(border));
+  std::map<Index, Index> from, to;  // vertex -> the side that starts there, and that ends
+  for (const Index h : stretch) {
+    from[start_of(surface_.mesh.faces, h)] = h;
+    to[end_of(surface_.mesh.faces, h)] = h;
+  }
+  Index first = stretch.front();
+  for (std::size_t k = 0; k < stretch.size() && to.contains(start_of(surface_.mesh.faces, first));
+       ++k)
+    first = to.at(start_of(surface_.mesh.faces, first));
+  std::vector<Index> walk{first};
+  for (auto next = from.find(end_of(surface_.mesh.faces, first));
+       next != from.end() && next->second != first && walk.size() < stretch.size();
+       next = from.find(end_of(surface_.mesh.faces, walk.back())))
+    walk.push_back(next->second);
+  return walk;
+}
+
+/// Parts of a walk along the border, half as long as it, and so on: of each length those first
+/// where the maps miss each other least.
+std::vector<std::span<const Index>> parts_of(const RegionPair& pair, std::span<const Index> walk) {
+  std::vector<std::span<const Index>> all;
+  for (std::size_t sides = (walk.size() + 1) / 2;; sides /= 4) {
+    std::vector<std::pair<double, std::size_t>> parts;  // miss, where it begins
+    for (std::size_t k = 0; k + sides <= walk.size(); k += (sides + 1) / 2)
+      parts.emplace_back(rounded(pair.place(walk.subspan(k, sides)).miss), k);
+    std::ranges::sort(parts);
+    parts.resize(std::min(parts.size(), kPartsTried));
+    for (const auto& [miss, k] : parts) all.push_back(walk.subspan(k, sides));
+    if (sides < 4) return all;
+  }
+}
+
+/// Edges of the border at which none of b would lie on a, those first where the maps miss each
+/// other least.
+std::vector<std::span<const Index>> free_edges(const RegionPair& pair,
+                                               std::span<const Index> border,
+                                               std::span<const char> open) {
+  std::vector<std::pair<double, std::size_t>> edges;  // miss, place in the border
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    const Placement placement = pair.place(border.subspan(k, 1));
+    if (pair.covered(placement, open) == 0) edges.emplace_back(rounded(placement.miss), k);
+  }
+  std::ranges::sort(edges);
+  edges.resize(std::min(edges.size(), kEdgesTried));
+  std::vector<std::span<const Index>> free;
+  for (const auto& [miss, k] : edges) free.push_back(border.subspan(k, 1));
+  return free;
+}
+
+Joined Joiner::force(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
+                     const TestRules& trial, const MapAnyhow& map) const {
+  const RegionPair pair(surface_, a, b);
+  const std::vector<Index> common = pair.border(open);
+  const auto joined_along = [&](std::span<const Index> glued, const MapAnyhow& by) {
+    Joined joined{
+        {pair.place(glued).both}, Verdict::impossible, both_sides(without(common, glued))};
+    std::vector<char> cut(open.begin(), open.end());
+    for (const Index h : joined.slit) cut[h] = 1;
+    const TestResult result = by(cut, joined.region);
+    joined.verdict = result.verdict;
+    joined.region.excess = result.excess;
+    joined.region.area = a.area + b.area;
+    joined.region.is_sound = joined.verdict != Verdict::impossible;
+    joined.region.is_forced = true;
+    return joined;
+  };
+  Joined all = joined_along(common, map);
+  if (all.verdict == Verdict::sound) return all;
+  const MapAnyhow beside = [&](std::span<const char> cut, Region& region) {
+    return test_parameterization(surface_, cut, trial, region);
+  };
+  const std::vector<Index> stretch = longest_stretch(common);
+  std::vector<std::span<const Index>> parts = parts_of(pair, stretch);
+  for (const std::span<const Index> edge : free_edges(pair, common, open)) parts.push_back(edge);
+  for (const std::span<const Index> part : parts) {
+    Joined along_part = joined_along(part, beside);
+    if (along_part.verdict == Verdict::sound) return along_part;
+  }
+  return joined_along(parts.front(), map);
 }
 
 }  // namespace unwrapd::segment

@@ -1,6 +1,7 @@
 #pragma once
 // Two neighbouring regions tried as one.
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,7 +14,7 @@ struct MappedRegion : Region {
   ExcessDistortion excess = {};  ///< of that map
   double area = 0;               ///< of the surface's 1
   double area_added = 0;         ///< of it, since all of it was last mapped
-  bool is_sound = false;         ///< its map is; what is not sound merges with nothing
+  bool is_sound = false;         ///< its map is, or it is forced; what is neither merges no more
 
   [[nodiscard]] double mean_excess() const { return excess.worst() / area; }
 };
@@ -35,6 +36,10 @@ bool is_small_beside(const Region& b, const Region& a);
 /// added to a since all of it was mapped, the map of a stays (Region::mapped).
 MappedRegion unite(const MappedRegion& a, const MappedRegion& b, Region laid);
 
+/// Maps a region at any distortion: `impossible` where it is no disk, and `flawed` where there are
+/// flips or overlaps in the map, which is for an estimate of the excess. open: one a half-edge.
+using MapAnyhow = std::function<TestResult(std::span<const char> open, Region& region)>;
+
 /// What joining regions needs of the surface, worked out once.
 class Joiner {
  public:
@@ -50,9 +55,17 @@ class Joiner {
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
                             std::span<const char> open, double cap, const TestRules& trial) const;
 
+  /// Both as one region where join() has found no sound map: from another start, or glued along a
+  /// part of their border, or else without a sound map.
+  [[nodiscard]] Joined force(const MappedRegion& a, const MappedRegion& b,
+                             std::span<const char> open, const TestRules& trial,
+                             const MapAnyhow& map) const;
+
  private:
   [[nodiscard]] double length_of(std::span<const Index> border) const;
   [[nodiscard]] std::vector<Index> slit_of(std::span<const Index> border) const;
+  [[nodiscard]] std::vector<Index> both_sides(std::span<const Index> border) const;
+  [[nodiscard]] std::vector<Index> longest_stretch(std::span<const Index> border) const;
 
   const SegmentationMesh& surface_;
   std::vector<char> is_flat_;  ///< one a vertex

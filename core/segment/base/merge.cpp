@@ -161,9 +161,7 @@ class Merging {
     }
     executor.for_each_block(static_cast<int>(batch.size()), [&](int k) {
       Union& own = batch[static_cast<std::size_t>(k)];
-      own.tried = std::make_shared<Joined>(
-          joiner_.join(regions_[own.a], regions_[own.b], open_, settings_.cap,
-                       {.stop = context_.stop, .memory = context_.failures}));
+      own.tried = std::make_shared<Joined>(joined(regions_[own.a], regions_[own.b]));
     });
     throw_if_cancelled(context_.stop);
     for (Union& both : batch) {
@@ -171,6 +169,13 @@ class Merging {
         context_.progress->add(regions_[both.a].faces.size() + regions_[both.b].faces.size());
       judge(std::move(both));
     }
+  }
+
+  [[nodiscard]] Joined joined(const MappedRegion& a, const MappedRegion& b) const {
+    TestRules trial{.stop = context_.stop, .memory = context_.failures};
+    if (!settings_.anyhow) return joiner_.join(a, b, open_, settings_.cap, trial);
+    trial.most_excess = settings_.cap;
+    return joiner_.force(a, b, open_, trial, settings_.anyhow);
   }
 
   /// Whether the shape of the region would leave too much of a page empty.

@@ -23,6 +23,7 @@ struct MergeSettings {
   Index whole = 0;         ///< regions at the front that merge with no other one of these
   Index enough = 1;        ///< merging ends at this number of regions
   bool only_kept = false;  ///< regions merge only across edges that are kept
+  MapAnyhow anyhow = {};   ///< unions need no sound map (Joiner::force()); empty: they do
 };
 
 /// What a step of the search works on, reports to and stops at.

@@ -53,22 +53,31 @@ UvMap to_best_scale(const Disk& disk, UvMap uv) {
   return uv;
 }
 
+/// The map at its best scale, if it is injective at both.
+std::optional<UvMap> if_injective(const Disk& disk, UvMap uv) {
+  const auto is_injective = [&] {
+    return measure::is_plainly_injective(disk.faces, disk.loops, uv);
+  };
+  if (uv.size() != disk.positions.size() || !is_injective()) return std::nullopt;
+  uv = to_best_scale(disk, std::move(uv));
+  return is_injective() ? std::optional(std::move(uv)) : std::nullopt;
+}
+
 /// An injective map to start from; empty if double precision gives none.
 template <class Map>
 std::optional<UvMap> start_from(const Disk& disk, Map map) {
   try {
     UvMap uv = map(maps::fill_holes(disk).disk);
     uv.resize(disk.positions.size());
-    if (!measure::is_plainly_injective(disk.faces, disk.loops, uv)) return std::nullopt;
-    uv = to_best_scale(disk, std::move(uv));
-    if (measure::is_plainly_injective(disk.faces, disk.loops, uv)) return uv;
+    return if_injective(disk, std::move(uv));
   } catch (const Error&) {  // this map does not exist; try the other one
     throw_if_cancelled(disk.stop);
   }
   return std::nullopt;
 }
 
-std::optional<UvMap> injective_start(const Disk& disk) {
+std::optional<UvMap> injective_start(const Disk& disk, const UvMap& given) {
+  if (std::optional<UvMap> start = if_injective(disk, given)) return start;
   std::optional<UvMap> start =
       start_from(disk, [](const Disk& d) { return maps::mean_value_map(d); });
   return start ? start : start_from(disk, [](const Disk& d) { return maps::tutte_map(d); });
@@ -128,9 +137,9 @@ void keep_apart(const Disk& disk, UvMap moved, UvMap& uv) {
 
 }  // namespace
 
-bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv) {
+bool map_injectively(const Disk& disk, const MapIntent& intent, UvMap& uv, const UvMap& given) {
   throw_if_cancelled(intent.stop);
-  std::optional<UvMap> start = injective_start(disk);
+  std::optional<UvMap> start = injective_start(disk, given);
   throw_if_cancelled(intent.stop);
   if (!start) return false;
   const Target target = target_of(disk, intent, uv);

@@ -1,0 +1,18 @@
+#pragma once
+// Charts that were made to be few, whose maps may overlap.
+
+#include <stop_token>
+#include <vector>
+
+#include "core/charts/charts.hpp"
+
+namespace unwrapd::segment {
+
+/// Each chart that was made at any distortion (Region::is_forced) and whose map overlaps has a new
+/// start that does not; or where that has more distortion than the component as one chart, or none
+/// is found, the component cut to a disk. Throws Error{cancelled}.
+std::vector<charts::Chart> settle_forced(const charts::Chart& component,
+                                         std::vector<charts::Chart> charts,
+                                         const std::stop_token& stop);
+
+}  // namespace unwrapd::segment

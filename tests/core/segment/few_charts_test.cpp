@@ -1,0 +1,132 @@
+// What max_charts comes to where no two of the last charts have a common map side by side.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "core/segment/base/merge.hpp"
+#include "core/segment/map_anyhow.hpp"
+#include "core/segment/settle_forced.hpp"
+#include "tests/core/hard_shapes.hpp"
+#include "tests/core/segment/cut_up.hpp"
+#include "tests/core/unwrapped_surface.hpp"
+
+namespace unwrapd::segment {
+namespace {
+
+/// A star with six blunt arms, a branching tree, so to say.
+TriMesh star(int levels) {
+  TriMesh mesh = shapes::sphere(levels);
+  for (Vec3& p : mesh.positions) {
+    const double along = p.normalized().cwiseAbs().maxCoeff();
+    p *= 0.3 + 1.2 * std::pow(along, 12);
+  }
+  return mesh;
+}
+
+UnwrapOptions bijective(Index most) {
+  UnwrapOptions options;
+  options.guarantee = Guarantee::bijective;
+  options.max_distortion = 2.02;
+  options.max_charts = most;
+  return options;
+}
+
+double worst(const Distortion& d) { return std::max(d.angle, d.area); }
+
+class FewCharts : public testing::TestWithParam<std::pair<std::string, TriMesh>> {};
+
+TEST_P(FewCharts, AreNoMoreThanAskedAndNoWorseThanACut) {
+  const TriMesh& mesh = GetParam().second;
+  const std::size_t wanted = faces_of(cut_up(mesh, {.max_distortion = 2.02})).size();
+  UnwrapOptions whole = bijective(1);
+  whole.max_distortion.reset();
+  const double cut = worst(unwrapped_surface(shapes::surface_of(mesh), whole).report.distortion);
+  for (Index most = 1; most < std::min<Index>(static_cast<Index>(wanted), 5); ++most) {
+    const Unwrapped few = unwrapped_surface(shapes::surface_of(mesh), bijective(most));
+    EXPECT_LE(few.report.charts.size(), std::size_t(most));
+    EXPECT_LE(worst(few.report.distortion), cut + 1e-3) << most;
+    for (const ChartReport& chart : few.report.charts) {
+      EXPECT_EQ(chart.distortion.flipped, 0);
+      EXPECT_EQ(chart.overlaps, 0);
+    }
+    const Cut parts = cut_up(mesh, {.max_distortion = 2.02, .max_charts = most});
+    for (const charts::Chart& chart : parts.surfaces.front().charts) expect_disk(chart);
+    EXPECT_FALSE(parts.note.has_value());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, FewCharts,
+    testing::Values(std::pair("sphere", shapes::sphere(3)), std::pair("star", star(3)),
+                    std::pair("pierced_bar", shapes::subdivided(shapes::pierced_bar(3))),
+                    std::pair("torus", shapes::torus(24, 12))),
+    [](const auto& shape) { return shape.param.first; });
+
+/// Two halves of a ball meet along one ring: glued all along it, nothing is left to lay flat.
+TEST(Force, HingesWhatWouldClose) {
+  const TriMesh mesh = shapes::sphere(2);
+  const SegmentationMesh surface =
+      make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+  std::array<MappedRegion, 2> half;
+  for (Index t = 0; t < surface.face_count(); ++t) {
+    double z = 0;
+    for (const Index v : surface.mesh.faces[std::size_t(t)])
+      z += surface.mesh.positions[std::size_t(v)].z();
+    half[z > 0 ? 0 : 1].faces.push_back(t);
+  }
+  for (MappedRegion& own : half) {
+    own.uv = projected(surface, own.faces);
+    ASSERT_EQ(test_parameterization(surface, {}, {.most_excess = 1}, own).verdict, Verdict::sound);
+    own.area = 0.5;
+  }
+  const std::vector<char> open(surface.length.size(), 0);
+  const Joiner joiner(surface);
+  EXPECT_FALSE(joiner.join(half[0], half[1], open, 1, {}).region.is_sound);
+  const auto map = [&](std::span<const char> cut, Region& region) {
+    return map_anyhow(surface, cut, {}, region);
+  };
+  const Joined both = joiner.force(half[0], half[1], open, {.most_excess = 1}, map);
+  EXPECT_EQ(both.verdict, Verdict::sound);
+  EXPECT_EQ(both.region.faces.size(), std::size_t(surface.face_count()));
+  EXPECT_TRUE(both.region.is_forced);
+  std::vector<char> cut = open;
+  for (const Index h : both.slit) cut[std::size_t(h)] = 1;
+  const auto seam = RegionPair(surface, half[0], half[1]).border(open).size();
+  EXPECT_LT(both.slit.size(), 2 * seam);
+  EXPECT_GT(both.slit.size(), 0U);
+  for (const Index h : both.slit)
+    EXPECT_EQ(cut[std::size_t(surface.halfedges.twin[std::size_t(h)])], 1);
+}
+
+/// Three balls want more charts than there are: none of these is left over.
+TEST(FewCharts, AreAllSharedOut) {
+  const std::vector<TriMesh> balls{shapes::sphere(3), moved(shapes::sphere(3), {5, 0, 0}),
+                                   moved(star(3), {10, 0, 0})};
+  const TriMesh mesh = shapes::merged(balls);
+  const auto wanted = static_cast<Index>(faces_of(cut_up(mesh, {.max_distortion = 2.02})).size());
+  ASSERT_GT(wanted, 6);
+  for (Index most = 3; most <= wanted; ++most)
+    EXPECT_EQ(faces_of(cut_up(mesh, {.max_distortion = 2.02, .max_charts = most})).size(),
+              std::size_t(most));
+}
+
+/// A map that lies on itself is no start for a chart: another one is, or the component stays whole.
+TEST(SettleForced, FindsAMapWithoutOverlapsOrCutsTheComponent) {
+  charts::Chart ball =
+      charts::components_of(shapes::surface_of(shapes::sphere(2)), {}).charts.at(0);
+  charts::Chart bag = ball;
+  charts::cut(bag);
+  bag.start.assign(bag.mesh.positions.size(), Vec2(0, 0));
+  const auto settled = settle_forced(ball, {bag}, {});
+  ASSERT_EQ(settled.size(), 1U);
+  expect_disk(settled[0]);
+  ASSERT_EQ(settled[0].start.size(), bag.start.size());
+  expect_no_overlap(settled[0]);
+}
+
+}  // namespace
+}  // namespace unwrapd::segment
