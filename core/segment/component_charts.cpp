@@ -110,7 +110,7 @@ class ComponentSearch {
   std::vector<charts::Chart> symmetric_parts(const SegmentRules& rules) {
     if (component_.mesh.face_count() / 2 > search_extent(rules.effort).second.beyond) return {};
     const SegmentationMesh surface = make_segmentation_mesh(component_);
-    const std::optional<Mirror> mirror = find_mirror(surface.mesh, rules.stop);
+    const std::optional<Mirror> mirror = find_mirror(surface.mesh, surface.halfedges, rules.stop);
     if (!mirror) return {};
     const auto segments = segment_symmetrically(component_, surface, *mirror, rules, executor_);
     return segments ? region_charts(component_, *segments) : std::vector<charts::Chart>();

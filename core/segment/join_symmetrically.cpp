@@ -74,30 +74,29 @@ class SymmetricPartition {
       regions_[k] = tested(std::move(regions_[k]));
   }
 
-  /// Joins regions with their images, then pairs of images with what they touch. Regions of most
-  /// common border come first.
+  /// Joins regions with their images, then these with pairs of images and with each other. Regions
+  /// of most common border come first.
   void join_across() {
     for (const MappedRegion& region : regions_) total_ += region.excess;
     is_whole_.assign(regions_.size(), 0);
-    join_in_order(pairs_across(), [this](Index a, Index b) { join_with_image(a, b); });
+    join_in_order(pairs_across(), [this](Index a, Index b) { join_two(a, b); });
     for (bool is_new = true; is_new;) {
-      const std::size_t before = count();
+      const std::ptrdiff_t before = count();
       join_in_order(pairs_at_whole(), [this](Index whole, Index a) { join_pair(whole, a); });
+      join_in_order(pairs_of_whole(), [this](Index a, Index b) { join_two(a, b); });
       is_new = count() < before;
     }
   }
 
-  [[nodiscard]] std::size_t count() const {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        regions_, [](const MappedRegion& own) { return !own.faces.empty(); }));
+  [[nodiscard]] std::ptrdiff_t count() const {
+    return std::ranges::count_if(regions_, [](const auto& own) { return !own.faces.empty(); });
   }
 
   /// Of all regions, and of each.
   [[nodiscard]] bool keeps_bound() const {
-    const double most = budget_ / kMarginOfExcess;
-    return total_excess(regions_).worst() <= most &&
-           std::ranges::all_of(regions_, [&](const MappedRegion& own) {
-             return own.excess.worst() <= kMostOfOneRegion * most * own.area;
+    const double most = budget_ / kMarginOfExcess, most_of_one = kMostOfOneRegion * most;
+    return total_excess(regions_).worst() <= most && std::ranges::all_of(regions_, [&](auto& own) {
+             return own.excess.worst() <= most_of_one * own.area;
            });
   }
 
@@ -189,11 +188,7 @@ class SymmetricPartition {
 
   /// Regions and their images are neighbours in the list until they are joined.
   [[nodiscard]] Borders pairs_across() const {
-    Borders pairs = borders();
-    std::erase_if(pairs, [](const auto& entry) {
-      return entry.first.first % 2 != 0 || entry.first.second != entry.first.first + 1;
-    });
-    return pairs;
+    return borders_if([](Index a, Index b) { return a % 2 == 0 && b == a + 1; });
   }
 
   /// {a region that is its own image, the first of a pair that it touches}
@@ -205,6 +200,19 @@ class SymmetricPartition {
       const Index whole = is_whole_[a] != 0 ? a : b, other = is_whole_[a] != 0 ? b : a;
       pairs[{whole, other - other % 2}] += length;
     }
+    return pairs;
+  }
+
+  /// Neighbours that are their own images.
+  [[nodiscard]] Borders pairs_of_whole() const {
+    return borders_if([this](Index a, Index b) { return is_whole_[a] != 0 && is_whole_[b] != 0; });
+  }
+
+  template <class Test>
+  [[nodiscard]] Borders borders_if(Test test) const {
+    Borders pairs = borders();
+    std::erase_if(pairs,
+                  [&](const auto& entry) { return !test(entry.first.first, entry.first.second); });
     return pairs;
   }
 
@@ -242,7 +250,8 @@ class SymmetricPartition {
     for (const Index h : slit) open_[h] = 1;
   }
 
-  void join_with_image(Index a, Index b) {
+  /// A region with its image, or two that are their own images.
+  void join_two(Index a, Index b) {
     Joined both = join(regions_[a], regions_[b]);
     if (!both.region.is_sound) return;
     const ExcessDistortion more = both.region.excess - regions_[a].excess - regions_[b].excess;

@@ -17,6 +17,8 @@
 namespace unwrapd::segment {
 namespace {
 
+constexpr double kMostToothed = 1.5;  // times as long as the same without teeth
+
 Vec3 middle_of(const TriMesh& mesh, const Triangle& face) {
   return (mesh.positions[face[0]] + mesh.positions[face[1]] + mesh.positions[face[2]]) / 3;
 }
@@ -115,9 +117,25 @@ void find_sources(const TriMesh& mesh, Mirror& mirror) {
   }
 }
 
+/// Whether the border between front and back runs to and fro across the plane, as between the long
+/// triangles of a tube's wall halfway up: charts that end there would have teeth.
+bool is_toothed(const TriMesh& mesh, const Halfedges& halfedges, const Mirror& mirror) {
+  double length = 0, along_plane = 0;
+  for (Index h = 0; h < 3 * mesh.face_count(); ++h) {
+    const Index twin = halfedges.twin[h];
+    if (twin == kNoTwin || mirror.is_front[face_of(h)] == mirror.is_front[face_of(twin)]) continue;
+    const Vec3 side =
+        mesh.positions[end_of(mesh.faces, h)] - mesh.positions[start_of(mesh.faces, h)];
+    length += side.norm();
+    along_plane += (side - mirror.normal.dot(side) * mirror.normal).norm();
+  }
+  return length > kMostToothed * along_plane;
+}
+
 }  // namespace
 
-std::optional<Mirror> find_mirror(const TriMesh& mesh, const std::stop_token& stop) {
+std::optional<Mirror> find_mirror(const TriMesh& mesh, const Halfedges& halfedges,
+                                  const std::stop_token& stop) {
   const Directions directions(mesh);
   std::vector<Index> all(mesh.positions.size());
   std::iota(all.begin(), all.end(), 0);
@@ -134,7 +152,7 @@ std::optional<Mirror> find_mirror(const TriMesh& mesh, const std::stop_token& st
     const auto front = std::ranges::count(mirror.is_front, 1);
     if (front == 0 || front == mesh.face_count()) continue;
     const auto vertex = vertex_images(mesh, tree, mirror);
-    if (!vertex) continue;
+    if (!vertex || is_toothed(mesh, halfedges, mirror)) continue;
     mirror.halfedge = halfedge_images(mesh, *vertex);
     find_sources(mesh, mirror);
     return mirror;

@@ -6,6 +6,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/mesh/halfedges.hpp"
 #include "core/mesh/tri_mesh.hpp"
 
 namespace unwrapd::segment {
@@ -30,8 +31,10 @@ inline constexpr double kMirrorTolerance = 1e-3;
 inline constexpr double kLeastMirrored = 0.95;
 
 /// The mirror of a mesh of area 1: the first that fits of the planes across the axes and across the
-/// principal axes, through the centre. Throws Error{cancelled}.
-std::optional<Mirror> find_mirror(const TriMesh& mesh, const std::stop_token& stop = {});
+/// principal axes, through the centre, along which the mesh can be parted without teeth. Throws
+/// Error{cancelled}.
+std::optional<Mirror> find_mirror(const TriMesh& mesh, const Halfedges& halfedges,
+                                  const std::stop_token& stop = {});
 
 /// The map of a face in front, as its image has it at the corners of a face behind that lies there.
 std::array<Vec2, 3> reflected_map(const Mirror& mirror, const TriMesh& mesh,

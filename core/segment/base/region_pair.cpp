@@ -98,6 +98,7 @@ Placement RegionPair::place(std::span<const Index> border) const {
   Placement placement{a_, miss_of(pairs, motion)};
   Region& both = placement.both;
   both.faces.insert(both.faces.end(), b_.faces.begin(), b_.faces.end());
+  both.is_forced = both.is_forced || b_.is_forced;
   for (const auto& [p, q, r] : b_.uv) both.uv.push_back({motion(p), motion(q), motion(r)});
   return placement;
 }

@@ -30,7 +30,7 @@ struct Sample {
   explicit Sample(const TriMesh& mesh) : given(shapes::surface_of(mesh)) {
     component = charts::components_of(given, {}).charts.at(0);
     surface = make_segmentation_mesh(component.mesh, component.halfedges, component.crease);
-    mirror = find_mirror(surface.mesh);
+    mirror = find_mirror(surface.mesh, surface.halfedges);
   }
   [[nodiscard]] std::optional<Segments> segments(double bound = 2.02) const {
     SerialExecutor serial;
@@ -85,6 +85,15 @@ TEST(Mirror, IsNotFoundWhereThereIsNone) {
   for (Vec3& p : mesh.positions)
     p = Vec3(p.x() * (2 + p.y()), p.y() * (3 + p.z()), p.z() * (1.5 + 0.5 * p.x()));
   EXPECT_FALSE(Sample(mesh).mirror);
+}
+
+/// The long triangles of a tube's wall have their middles on either side of the plane halfway up.
+TEST(Mirror, DoesNotPartTheWallOfATubeIntoTeeth) {
+  TriMesh tube = shapes::cylinder(60, 1, 1, 12);
+  for (Vec3& p : tube.positions) p = {p.z(), p.x(), p.y()};
+  const Sample sample(tube);
+  ASSERT_TRUE(sample.mirror);
+  EXPECT_LT(std::abs(sample.mirror->normal.x()), 0.1);
 }
 
 TEST(SegmentSymmetrically, SeamsAreTheirOwnImage) {
