@@ -43,14 +43,14 @@ solve::repair::OwnEnergy own_energy_of(const solve::Disk& disk, const UnwrapOpti
 }
 
 /// A segmented chart is one of many anyway and has a bound of distortion: splitting it is better
-/// than a new map of much energy. Any other chart is split where that keeps the energy low, unless
-/// it must stay whole or the number of charts is limited.
+/// than a new map of much energy. Any other chart is split where that keeps the energy low. None is
+/// that must stay whole, or where the number of charts is limited.
 double most_rise_of(const charts::Chart& chart, const UnwrapOptions& options,
                     solve::repair::OwnEnergy own) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  if (options.max_charts) return kAny;
   if (chart.least == Guarantee::bijective) return kMostRise;
-  const bool may_split = !options.max_charts && !keeps_whole(options);
-  if (own == solve::repair::OwnEnergy::fit && may_split) return kMostPressed;
-  return std::numeric_limits<double>::infinity();
+  return own == solve::repair::OwnEnergy::fit && !keeps_whole(options) ? kMostPressed : kAny;
 }
 
 /// The guarantee that is asked for, or a stronger one that the chart has by the way it was made.

@@ -63,6 +63,7 @@ std::string advice_to_split(const UnwrapOptions& options) {
 
 std::string advice_on_distortion(const UnwrapOptions& options) {
   if (!options.max_distortion) return advice_to_split(options);
+  if (options.max_charts) return " max_charts leaves no room for the bound.";
   if (options.method != Method::arap)
     return " The bound holds for maps of method=arap; other methods trade areas for angles.";
   if (!options.keep_edges.empty())
@@ -70,7 +71,7 @@ std::string advice_on_distortion(const UnwrapOptions& options) {
   if (options.welding.mode == WeldMode::distance)
     return " Charts keep the bound where corners are welded, not on those of the file: send a "
            "smaller weld_distance.";
-  return options.max_charts ? " max_charts leaves no room for the bound." : "";
+  return "";
 }
 
 void note_distortion(Layout& layout, std::span<const Surface> surfaces,

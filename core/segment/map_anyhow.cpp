@@ -26,6 +26,7 @@ TestResult map_anyhow(const SegmentationMesh& surface, std::span<const char> ope
   SerialExecutor serial;
   solve::SolveWatch watch;
   watch.loop.stop = stop;
+  region.mapped = 0;  // all of it is mapped
   const solve::Solution solution = solve::Solver(disk, options, {}, serial).run(0, watch);
   for (std::size_t t = 0; t < region.uv.size(); ++t)
     for (std::size_t i = 0; i < 3; ++i)

@@ -235,7 +235,7 @@ Cuts cut_to_most(std::vector<charts::Charts>& surfaces, const SegmentOptions& op
   const SegmentWatch begin = has_steps ? part_of(watch, 0, kShareOfFirst) : watch;
   const Quotas quotas{std::vector<Index>(components, each), false, components == 1};
   Cuts cuts = cut_all(surfaces, quotas, first, begin, executor);
-  if (components == 1 || (cuts.charts() <= most && !has_steps)) return cuts;
+  if (each == 1 || components == 1 || (cuts.charts() <= most && !has_steps)) return cuts;
   surfaces = whole;
   const SegmentWatch rest =
       has_steps ? part_of(watch, kShareOfFirst, 1) : SegmentWatch{{}, watch.stop};

@@ -8,9 +8,9 @@
 
 namespace unwrapd::segment {
 
-/// Each chart that was made at any distortion (Region::is_forced) and whose map overlaps has a new
-/// start that does not; or where that has more distortion than the component as one chart, or none
-/// is found, the component cut to a disk. Throws Error{cancelled}.
+/// Each chart that was made at any distortion (Region::is_forced) and whose map overlaps has a
+/// start that does not, with the seams that it has or cut anew, whichever has less distortion.
+/// Where the component as one chart has still less, it is that. Throws Error{cancelled}.
 std::vector<charts::Chart> settle_forced(const charts::Chart& component,
                                          std::vector<charts::Chart> charts,
                                          const std::stop_token& stop);

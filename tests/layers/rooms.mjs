@@ -29,7 +29,7 @@ export const ROOMS = [
   ["core/pack", "packs islands onto pages", [...TERMS, "core/charts", "core/solve/base"]],
   ["core/segment/base", "regions and their trial maps; joins neighbours while the distortion allows it", [...SOLVING, "core/charts", "core/pack", "core/solve/arap"]],
   ["core/segment/search", "searches for few regions with short seams: joins, destroys, joins again, shortens, bisects", [...TERMS, "core/linear", "core/pack", "core/solve/base", "core/segment/base"]],
-  ["core/segment", "splits a surface into regions that become charts: whole, large and symmetric surfaces", [...SOLVING, "core/charts", "core/solve/repair", "core/solve", "core/segment/base", "core/segment/search"]],
+  ["core/segment", "splits a surface into regions that become charts: whole, large and symmetric surfaces", [...SOLVING, "core/charts", "core/guarantee", "core/solve", "core/segment/base", "core/segment/search"]],
   ["core/pipeline", "the steps of unwrapping", [...SOLVING, "core/charts", "core/guarantee", "core/pack", "core/segment", "core/solve"]],
   ["core", "the front door: unwrap(), the list of its steps", [...TERMS, "core/charts", "core/guarantee", "core/pipeline", "core/segment", "core/solve"]],
   ["core/figure", "layouts and previews as SVG and pixels", [...TERMS, "core/measure"]],

@@ -39,7 +39,7 @@ constexpr std::size_t kSmall = 8;          // times fewer faces than a large reg
 constexpr double kMostCovered = 0.5;       // of a small region
 constexpr std::size_t kFewFaces = 4;       // tell too little of what is covered
 constexpr std::size_t kPartsTried = 4;     // of a stretch, of each length
-constexpr std::size_t kEdgesTried = 8;     // of a border
+constexpr std::size_t kEdgesTried = 24;    // of a border
 
 /// Whether hardly any map of both would be sound. area: of both; length: of the border.
 bool is_hopeless(const RegionPair& pair, const Placement& placement, std::span<const char> open,
@@ -217,17 +217,17 @@ std::vector<std::span<const Index>> free_edges(const RegionPair& pair,
 
 Joined Joiner::force(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
                      const TestRules& trial, const MapAnyhow& map) const {
+  if (is_small_beside(a, b)) return force(b, a, open, trial, map);
   const RegionPair pair(surface_, a, b);
   const std::vector<Index> common = pair.border(open);
   const auto joined_along = [&](std::span<const Index> glued, const MapAnyhow& by) {
-    Joined joined{
-        {pair.place(glued).both}, Verdict::impossible, both_sides(without(common, glued))};
+    Joined joined{unite(a, b, pair.place(glued).both), Verdict::impossible,
+                  both_sides(without(common, glued))};
     std::vector<char> cut(open.begin(), open.end());
     for (const Index h : joined.slit) cut[h] = 1;
     const TestResult result = by(cut, joined.region);
     joined.verdict = result.verdict;
     joined.region.excess = result.excess;
-    joined.region.area = a.area + b.area;
     joined.region.is_sound = joined.verdict != Verdict::impossible;
     joined.region.is_forced = true;
     return joined;
@@ -237,6 +237,9 @@ Joined Joiner::force(const MappedRegion& a, const MappedRegion& b, std::span<con
   const MapAnyhow beside = [&](std::span<const char> cut, Region& region) {
     return test_parameterization(surface_, cut, trial, region);
   };
+  const auto covered = [&](std::span<const Index> part) {
+    return rounded(pair.covered(pair.place(part), open));
+  };
   const std::vector<Index> stretch = longest_stretch(common);
   std::vector<std::span<const Index>> parts = parts_of(pair, stretch);
   for (const std::span<const Index> edge : free_edges(pair, common, open)) parts.push_back(edge);
@@ -244,7 +247,7 @@ Joined Joiner::force(const MappedRegion& a, const MappedRegion& b, std::span<con
     Joined along_part = joined_along(part, beside);
     if (along_part.verdict == Verdict::sound) return along_part;
   }
-  return joined_along(parts.front(), map);
+  return joined_along(*std::ranges::min_element(parts, {}, covered), map);
 }
 
 }  // namespace unwrapd::segment

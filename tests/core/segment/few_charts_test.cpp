@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <random>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -112,6 +114,35 @@ TEST(FewCharts, AreAllSharedOut) {
   for (Index most = 3; most <= wanted; ++most)
     EXPECT_EQ(faces_of(cut_up(mesh, {.max_distortion = 2.02, .max_charts = most})).size(),
               std::size_t(most));
+}
+
+/// Straight twigs along the axes, each from a place on an earlier one.
+TriMesh tree_of_voxels(unsigned seed) {
+  std::mt19937 draw(seed);
+  std::set<std::array<int, 3>> cells{{0, 0, 0}};
+  for (int twig = 0; twig < 40; ++twig) {
+    std::array<int, 3> at = *std::next(cells.begin(), int(draw() % cells.size()));
+    const std::size_t axis = draw() % 3;
+    const int step = draw() % 2 == 0 ? 1 : -1;
+    for (int k = 0; k < 7; ++k) at[axis] += step, cells.insert(at);
+  }
+  return shapes::voxel_surface(cells);
+}
+
+/// The limit may be missed where doubles have no map of a chart without overlaps; a note tells it.
+TEST(FewCharts, AreKeptToOrANoteTellsIt) {
+  for (unsigned seed = 1; seed <= 2; ++seed)
+    for (const Index most : {1}) {
+      const Report report =
+          unwrapped_surface(shapes::surface_of(tree_of_voxels(seed)), bijective(most)).report;
+      const Index allowed = std::max(most, report.input.components);
+      const bool is_noted = std::ranges::any_of(
+          report.notes, [](const Note& note) { return note.code == NoteCode::charts_exceeded; });
+      EXPECT_EQ(is_noted,
+                std::cmp_greater(report.charts.size(), allowed) || report.input.components > most)
+          << seed << ' ' << most << ' ' << report.charts.size();
+      EXPECT_EQ(report.overlaps, 0);
+    }
 }
 
 /// A map that lies on itself is no start for a chart: another one is, or the component stays whole.
