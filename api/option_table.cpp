@@ -150,9 +150,9 @@ constexpr std::array kRows = {
         "2.02."),
     figure<&O::max_charts>(
         "max_charts", {1, kMaxCharts}, kEveryMethod,
-        "The most charts, at any distortion; each component is one at least. Lower values "
-        "result in fewer charts, which hang together by parts of their borders, and "
-        "in more distortion where that is not enough. Unset: unlimited."),
+        "The most charts, at any distortion. Every component is at least one chart. "
+        "Lower values result in fewer charts with longer seams inside them, then in more "
+        "distortion. Unset: unlimited."),
     choice<&O::symmetry, kSymmetries>(
         "symmetry", kEveryMethod,
         "auto: seams of a surface with a mirror plane, which is detected, are symmetric; off: "

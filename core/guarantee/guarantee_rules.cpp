@@ -42,9 +42,9 @@ solve::repair::OwnEnergy own_energy_of(const solve::Disk& disk, const UnwrapOpti
   return keeps_sizes ? solve::repair::OwnEnergy::fit : solve::repair::OwnEnergy::mips;
 }
 
-/// A segmented chart is one of many anyway and has a bound of distortion: splitting it is better
-/// than a new map of much energy. Any other chart is split where that keeps the energy low. None is
-/// that must stay whole, or where the number of charts is limited.
+/// With max_charts no chart is split for its energy. Otherwise a segmented chart, which is one of
+/// many and has a bound of distortion, is split rather than given a new map of much energy. Any
+/// other chart is split where that keeps the energy low, unless it must stay whole.
 double most_rise_of(const charts::Chart& chart, const UnwrapOptions& options,
                     solve::repair::OwnEnergy own) {
   constexpr double kAny = std::numeric_limits<double>::infinity();

@@ -173,12 +173,13 @@ void note_new_maps(Layout& layout, const UnwrapOptions& options) {
             ("Charts that overlapped themselves and were cut: " + std::to_string(cut)) + ".";
   if (!text.empty()) layout.report.notes.push_back({NoteCode::chart_remapped, text});
   const std::size_t charts = layout.report.charts.size();
-  if (cut > 0 && options.max_charts && std::cmp_greater(charts, *options.max_charts) &&
-      !layout.all->note)
+  const bool is_told = layout.all->note && layout.all->note->code == NoteCode::charts_exceeded;
+  if (!is_told && options.max_charts && std::cmp_greater(charts, *options.max_charts) &&
+      has_split_charts(layout))
     layout.report.notes.push_back(
-        {NoteCode::charts_exceeded, "There are more charts than max_charts, " +
-                                        std::to_string(charts) +
-                                        ", because no map without overlaps was found for so few."});
+        {NoteCode::charts_exceeded,
+         "There are more charts than max_charts, " + std::to_string(charts) +
+             ", because no map without flips and overlaps was found for so few."});
 }
 
 bool has_split_charts(const Layout& layout) {

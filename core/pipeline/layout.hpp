@@ -30,7 +30,8 @@ std::vector<Layout> empty_layouts(const std::shared_ptr<const Prepared>& all,
 
 void add_chart(Layout& layout, std::size_t surface, MappedChart mapped);
 
-/// Notes how many charts have a new map in place of the method's own.
+/// Notes how many charts have a new map in place of the method's own, and whether splits left more
+/// charts than max_charts.
 void note_new_maps(Layout& layout, const UnwrapOptions& options);
 
 bool has_split_charts(const Layout& layout);

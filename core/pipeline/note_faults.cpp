@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "core/measure/page_area.hpp"
 #include "core/types/chart_rules.hpp"
@@ -61,9 +62,10 @@ std::string advice_to_split(const UnwrapOptions& options) {
   return " Send max_distortion=2.02 to split such charts.";
 }
 
-std::string advice_on_distortion(const UnwrapOptions& options) {
+std::string advice_on_distortion(const UnwrapOptions& options, std::size_t charts) {
   if (!options.max_distortion) return advice_to_split(options);
-  if (options.max_charts) return " max_charts leaves no room for the bound.";
+  if (options.max_charts && std::cmp_greater_equal(charts, *options.max_charts))
+    return " max_charts leaves no room for the bound.";
   if (options.method != Method::arap)
     return " The bound holds for maps of method=arap; other methods trade areas for angles.";
   if (!options.keep_edges.empty())
@@ -94,9 +96,9 @@ void note_distortion(Layout& layout, std::span<const Surface> surfaces,
                                ? "The mean distortion is beyond max_distortion."
                                : std::to_string(count) + " of " + std::to_string(charts.size()) +
                                      " charts are distorted beyond " + short_text(bearable) + ".";
-  layout.report.notes.push_back({NoteCode::distorted, what + " The worst is " +
-                                                          described(layout, surfaces, worst) + "." +
-                                                          advice_on_distortion(options)});
+  layout.report.notes.push_back(
+      {NoteCode::distorted, what + " The worst is " + described(layout, surfaces, worst) + "." +
+                                advice_on_distortion(options, charts.size())});
 }
 
 void note_overlaps(Layout& layout, std::span<const Surface> surfaces) {

@@ -17,7 +17,7 @@ struct ComponentRules {
 };
 
 struct ComponentCharts {
-  std::vector<charts::Chart> charts;  ///< each with a start, but for a component that is cut to one
+  std::vector<charts::Chart> charts;  ///< each with a start
   bool is_rough = false;              ///< its noise leaves no room for the bound
 };
 

@@ -67,6 +67,7 @@ class SymmetricPartition {
     for (Index t = 0; t < surface_.face_count(); ++t)
       if (const Index source = sources[t]; source >= 0) {
         Region& image = regions_[region[source] + 1];
+        image.is_forced = regions_[region[source]].is_forced;
         image.faces.push_back(t);
         image.uv.push_back(reflected_map(mirror_, surface_.mesh, {source, t}, *map[source]));
       }
@@ -102,13 +103,12 @@ class SymmetricPartition {
 
   Segments segments() {
     std::erase_if(regions_, [](const MappedRegion& own) { return own.faces.empty(); });
-    Partition partition{std::move(regions_), std::move(open_)};
+    const Partition partition{std::move(regions_), std::move(open_)};
     Segments segments{.regions = {},
-                      .open = {},
+                      .open = partition.open,
                       .excess = total_excess(partition.regions),
                       .seam_length = search::seam_length(surface_, partition)};
-    segments.open = std::move(partition.open);
-    for (MappedRegion& own : partition.regions) segments.regions.push_back(std::move(own));
+    for (const MappedRegion& own : partition.regions) segments.regions.push_back(own);
     return segments;
   }
 

@@ -33,7 +33,8 @@ constexpr double kSameBound = 1e-9;
 const MergeSettings kWhateverDistortion{
     .budget = kAnyExcess, .cap = kAnyExcess, .distortion_weight = kFarWeight * kAnyExcess};
 
-/// Merges further, whatever the distortion, to the allowed number of regions if maps allow it.
+/// Merges on to the allowed number of regions, at any distortion: first those that have a sound map
+/// side by side, then by force (Joiner::force()).
 Partition merge_to_limit(const MergeContext& context, Partition partition, Index most_regions,
                          Executor& executor) {
   if (partition.regions.size() <= static_cast<std::size_t>(most_regions)) return partition;

@@ -31,7 +31,7 @@ OnProgress progress_without_steps_back(OnProgress whole);
 
 struct SegmentRules {
   double max_distortion = kDefaultDistortion;  ///< of all regions together, D_angle and D_area; > 2
-  Index most_regions = std::numeric_limits<Index>::max();  ///< however distorted, if maps allow it
+  Index most_regions = std::numeric_limits<Index>::max();  ///< reached at any distortion
   double page_area = 1;  ///< of all that lies on one page with this surface, in units of its area
   Effort effort = Effort::balanced;
   bool is_quick = false;  ///< one merge, no search for the best
@@ -58,9 +58,9 @@ SeamsOfCharts seams_of(const Segments& segments);
 bool is_better(const SeamsOfCharts& one, const SeamsOfCharts& other, Index most);
 
 /// A surface segmented for one bound, and from there for looser ones. Every face is in exactly one
-/// region; each region is a disk (holes allowed) whose map has no flip and no overlap. In the worst
-/// case regions are single triangles. The same for any executor, and for the surface of a mesh that
-/// was moved or scaled. All throw Error{cancelled}.
+/// region; each region is a disk (holes allowed) whose map has no flip and no overlap, unless it is
+/// forced (Region::is_forced). In the worst case regions are single triangles. The same for any
+/// executor, and for the surface of a mesh that was moved or scaled. All throw Error{cancelled}.
 class SurfaceSegmentation {
  public:
   /// steps: how often loosen() is going to be called. surface and executor must outlive this.

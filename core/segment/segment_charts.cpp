@@ -2,8 +2,8 @@
 // purpose, or what needs no seam, and stays one chart unless a bound of distortion is asked for.
 // Everything else needs seams anyway, and then the best ones. So does a disk whose boundary is a
 // mere puncture: by the isoperimetric inequality it would have to be drawn out tenfold to enclose
-// the disk's area. A component that shall be one chart without a bound is cut to a disk. So is one
-// of which merging leaves too many charts, if the disk has a sound map.
+// the disk's area. Where a component shall be one chart and no bound is asked for, it is cut to a
+// disk. So is one that merging leaves in too many charts, if that disk has a sound map.
 #include "core/segment/segment_charts.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void note(charts::Charts& surface, RepairKind kind, Index count) {
 /// How many charts each component may become, in the order of surfaces and components.
 struct Quotas {
   std::vector<Index> most;
-  bool merges_to_one = false;  ///< 1: by merging, not by a cut to a disk
+  bool merges_to_one = false;  ///< 1: searched at the bound that is asked for, too
   bool is_last = true;         ///< not only to see how many charts the components would like
 };
 
@@ -93,7 +93,8 @@ class Cutter {
   Index cuts = 0, segmented = 0, rough = 0;
 
  private:
-  /// Where merging leaves too many charts, their maps would overlap, but that of a cut may not.
+  /// Merging may leave too many charts, as where seams come from a smaller surface. A cut may still
+  /// have a sound map.
   [[nodiscard]] bool is_sound_when_cut(charts::Chart component) const {
     if (!charts::is_disk(component)) charts::cut(component);
     return map_whole(component, kMostOfCut, executor_, account_.stop()).has_value();
@@ -107,8 +108,8 @@ class Cutter {
     charts.push_back(std::move(component));
   }
 
-  /// One chart, at any distortion: not by merging, whose last maps overlap where a cut's may not.
-  /// The search's only chart at the default bound is taken for every bound (ADR 0039).
+  /// One chart. With a bound it is the search's at kDefaultDistortion, whatever the bound
+  /// (ADR 0039); without one it is a cut.
   [[nodiscard]] bool is_one(Index most) const { return most == 1 && !quotas_.merges_to_one; }
 
   const SegmentOptions& options_;
@@ -202,7 +203,7 @@ Quotas shared_out(const Cuts& wanted, Index most) {
   const auto count = static_cast<Index>(quotas.most.size());
   const std::int64_t spare = std::max(most - count, 0), all = std::max(wanted.charts() - count, 1);
   std::vector<std::pair<std::int64_t, std::size_t>> missing;  // less than one chart, component
-  std::int64_t left = spare;
+  std::int64_t left = wanted.charts() > count ? spare : 0;
   for (std::size_t k = 0; k < quotas.most.size(); ++k) {
     const std::int64_t share = spare * (wanted.became[k] - 1);
     quotas.most[k] = 1 + static_cast<Index>(share / all);
@@ -242,10 +243,12 @@ Cuts cut_to_most(std::vector<charts::Charts>& surfaces, const SegmentOptions& op
   return cut_all(surfaces, shared_out(cuts, most), options, rest, executor);
 }
 
-Note more_than_asked(Index charts, Index components) {
-  return {NoteCode::charts_exceeded,
-          "The surface needs more charts than max_charts: " + std::to_string(charts) +
-              ", because the mesh has " + std::to_string(components) + " components."};
+Note more_than_asked(Index charts, Index components, Index most) {
+  const std::string why = components > most
+                              ? "the mesh has " + std::to_string(components) + " components"
+                              : "no map without overlaps was found for so few";
+  return {NoteCode::charts_exceeded, "The surface needs more charts than max_charts: " +
+                                         std::to_string(charts) + ", because " + why + "."};
 }
 
 Note rough_surfaces(Index count) {
@@ -266,7 +269,8 @@ std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces,
   const Cuts cuts = options.max_charts ? cut_to_most(surfaces, options, own, executor)
                                        : cut_all(surfaces, {std::vector<Index>(components, most)},
                                                  options, own, executor);
-  if (cuts.charts() > most) return more_than_asked(cuts.charts(), static_cast<Index>(components));
+  if (cuts.charts() > most)
+    return more_than_asked(cuts.charts(), static_cast<Index>(components), most);
   if (cuts.rough > 0) return rough_surfaces(cuts.rough);
   return std::nullopt;
 }

@@ -35,10 +35,9 @@ struct SegmentWatch {
 
 /// The components of surfaces (components_of()) become charts, all of them disks, and the repairs
 /// tell what was done. A disk stays as it is unless a distortion is asked for; any other component
-/// is taken apart by segment(), or cut to one disk where the number of charts leaves no more.
-/// Returns a note where more charts than asked for are needed, or noise leaves no room for the
-/// distortion, else nothing.
-/// The same for any executor. Throws Error{cancelled}.
+/// is taken apart by segment(), or cut to one disk where it shall be one chart and no distortion is
+/// asked for. Returns a note where more charts than asked for are needed, or noise leaves no room
+/// for the distortion, else nothing. The same for any executor. Throws Error{cancelled}.
 std::optional<Note> segment_charts(std::vector<charts::Charts>& surfaces,
                                    const SegmentOptions& options, const SegmentWatch& watch,
                                    Executor& executor);

@@ -50,6 +50,7 @@ Settled settled(charts::Chart chart, const std::stop_token& stop) try {
       std::make_shared<const charts::Chart>(chart), disk, arap_map(chart, disk, stop), rules);
   if (kept.parts.size() > 1) return {std::move(chart)};
   chart.start = std::move(kept.parts.front().uv);
+  chart.least = Guarantee::bijective;
   const double excess =
       excess_of(measure::distortion_sums(disk.rest, disk.faces, chart.start, stop)).worst();
   return {std::move(chart), disk.unit * disk.unit * excess};
@@ -80,8 +81,7 @@ charts::Chart cut_anew(const charts::Chart& component, const charts::Chart& char
 }
 
 bool overlaps(const charts::Chart& chart, const std::stop_token& stop) {
-  return chart.least != Guarantee::bijective &&
-         !measure::is_plainly_injective(chart.mesh.faces, chart.loops, chart.start, stop);
+  return !measure::is_plainly_injective(chart.mesh.faces, chart.loops, chart.start, stop);
 }
 
 }  // namespace
@@ -92,11 +92,18 @@ std::vector<charts::Chart> settle_forced(const charts::Chart& component,
   double excess = 0;
   bool were_settled = true;
   for (charts::Chart& chart : charts) {
-    if (!overlaps(chart, stop)) continue;
+    if (chart.least == Guarantee::bijective) continue;
+    if (!overlaps(chart, stop)) {
+      chart.least = Guarantee::bijective;
+      continue;
+    }
     were_settled = false;
-    Settled anew = settled(cut_anew(component, chart, stop), stop);
-    Settled own = settled(std::move(chart), stop);
-    if (anew.excess < own.excess) own = std::move(anew);
+    Settled own{chart};
+    if (chart.mesh.face_count() <= kMostFacesSettled) {
+      Settled anew = settled(cut_anew(component, chart, stop), stop);
+      own = settled(std::move(chart), stop);
+      if (anew.excess < own.excess) own = std::move(anew);
+    }
     excess += own.excess;
     chart = std::move(own.chart);
   }

@@ -10,7 +10,8 @@ namespace unwrapd::segment {
 
 /// Each chart that was made at any distortion (Region::is_forced) and whose map overlaps has a
 /// start that does not, with the seams that it has or cut anew, whichever has less distortion.
-/// Where the component as one chart has still less, it is that. Throws Error{cancelled}.
+/// Where the component as one chart has less than these charts together, it is that. Throws
+/// Error{cancelled}.
 std::vector<charts::Chart> settle_forced(const charts::Chart& component,
                                          std::vector<charts::Chart> charts,
                                          const std::stop_token& stop);

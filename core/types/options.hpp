@@ -116,8 +116,8 @@ struct UnwrapOptions {
   std::vector<SeamPath> seam_edges = {};       ///< cuts beside those of seams
   std::vector<SeamPath> keep_edges = {};       ///< no cut that is chosen follows these (ADR 0074)
   std::optional<double> max_distortion = {};   ///< D_angle and D_area of all charts, ADR 0018
-  std::optional<int> max_charts = {};          ///< of the asset, where its topology allows
-  int resolution = 1024;                       ///< side of the square page, texels, [16, 16384]
+  std::optional<int> max_charts = {};  ///< of the asset, but one for each component at least
+  int resolution = 1024;               ///< side of the square page, texels, [16, 16384]
   std::optional<int> width = {}, height = {};  ///< of the page, texels, in place of resolution
   PageFit page_fit = PageFit::given;
   int padding = 2;                             ///< gap between islands and to the border, texels

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numbers>
 #include <set>
@@ -56,6 +55,39 @@ std::vector<Index> without(std::span<const Index> sides, std::span<const Index> 
   for (const Index h : sides)
     if (!left_out.contains(h)) rest.push_back(h);
   return rest;
+}
+
+/// Parts of a walk along the border: a half of it long, an eighth, and so on. Of each length those
+/// come first where the maps miss each other least.
+std::vector<std::span<const Index>> parts_of(const RegionPair& pair, std::span<const Index> walk) {
+  std::vector<std::span<const Index>> all;
+  for (std::size_t sides = (walk.size() + 1) / 2;; sides /= 4) {
+    std::vector<std::pair<double, std::size_t>> parts;  // miss, where it begins
+    for (std::size_t k = 0; k + sides <= walk.size(); k += (sides + 1) / 2)
+      parts.emplace_back(rounded(pair.miss(walk.subspan(k, sides))), k);
+    std::ranges::sort(parts);
+    parts.resize(std::min(parts.size(), kPartsTried));
+    for (const auto& [miss, k] : parts) all.push_back(walk.subspan(k, sides));
+    if (sides < 4) return all;
+  }
+}
+
+/// Edges of the border at which none of b would lie on a. Those come first where the maps miss each
+/// other least.
+std::vector<std::span<const Index>> free_edges(const RegionPair& pair,
+                                               std::span<const Index> border,
+                                               std::span<const char> open) {
+  std::vector<std::pair<double, std::size_t>> edges;  // miss, place in the border
+  for (std::size_t k = 0; k < border.size(); ++k)
+    edges.emplace_back(rounded(pair.miss(border.subspan(k, 1))), k);
+  std::ranges::sort(edges);
+  std::vector<std::span<const Index>> free;
+  for (const auto& [miss, k] : edges) {
+    if (free.size() == kEdgesTried) break;
+    const std::span<const Index> edge = border.subspan(k, 1);
+    if (pair.covered(pair.place(edge), open) == 0) free.push_back(edge);
+  }
+  return free;
 }
 
 }  // namespace
@@ -183,38 +215,6 @@ std::vector<Index> Joiner::longest_stretch(std::span<const Index> border) const 
   return walk;
 }
 
-/// Parts of a walk along the border, half as long as it, and so on: of each length those first
-/// where the maps miss each other least.
-std::vector<std::span<const Index>> parts_of(const RegionPair& pair, std::span<const Index> walk) {
-  std::vector<std::span<const Index>> all;
-  for (std::size_t sides = (walk.size() + 1) / 2;; sides /= 4) {
-    std::vector<std::pair<double, std::size_t>> parts;  // miss, where it begins
-    for (std::size_t k = 0; k + sides <= walk.size(); k += (sides + 1) / 2)
-      parts.emplace_back(rounded(pair.place(walk.subspan(k, sides)).miss), k);
-    std::ranges::sort(parts);
-    parts.resize(std::min(parts.size(), kPartsTried));
-    for (const auto& [miss, k] : parts) all.push_back(walk.subspan(k, sides));
-    if (sides < 4) return all;
-  }
-}
-
-/// Edges of the border at which none of b would lie on a, those first where the maps miss each
-/// other least.
-std::vector<std::span<const Index>> free_edges(const RegionPair& pair,
-                                               std::span<const Index> border,
-                                               std::span<const char> open) {
-  std::vector<std::pair<double, std::size_t>> edges;  // miss, place in the border
-  for (std::size_t k = 0; k < border.size(); ++k) {
-    const Placement placement = pair.place(border.subspan(k, 1));
-    if (pair.covered(placement, open) == 0) edges.emplace_back(rounded(placement.miss), k);
-  }
-  std::ranges::sort(edges);
-  edges.resize(std::min(edges.size(), kEdgesTried));
-  std::vector<std::span<const Index>> free;
-  for (const auto& [miss, k] : edges) free.push_back(border.subspan(k, 1));
-  return free;
-}
-
 Joined Joiner::force(const MappedRegion& a, const MappedRegion& b, std::span<const char> open,
                      const TestRules& trial, const MapAnyhow& map) const {
   if (is_small_beside(a, b)) return force(b, a, open, trial, map);
@@ -233,21 +233,23 @@ Joined Joiner::force(const MappedRegion& a, const MappedRegion& b, std::span<con
     return joined;
   };
   Joined all = joined_along(common, map);
-  if (all.verdict == Verdict::sound) return all;
+  if (all.verdict == Verdict::sound || is_cancelled(trial.stop)) return all;
   const MapAnyhow beside = [&](std::span<const char> cut, Region& region) {
     return test_parameterization(surface_, cut, trial, region);
-  };
-  const auto covered = [&](std::span<const Index> part) {
-    return rounded(pair.covered(pair.place(part), open));
   };
   const std::vector<Index> stretch = longest_stretch(common);
   std::vector<std::span<const Index>> parts = parts_of(pair, stretch);
   for (const std::span<const Index> edge : free_edges(pair, common, open)) parts.push_back(edge);
   for (const std::span<const Index> part : parts) {
+    if (is_cancelled(trial.stop)) return all;
     Joined along_part = joined_along(part, beside);
     if (along_part.verdict == Verdict::sound) return along_part;
   }
-  return joined_along(*std::ranges::min_element(parts, {}, covered), map);
+  std::vector<double> covered;
+  for (const std::span<const Index> part : parts)
+    covered.push_back(rounded(pair.covered(pair.place(part), open)));
+  const auto least = std::ranges::min_element(covered) - covered.begin();
+  return joined_along(parts[static_cast<std::size_t>(least)], map);
 }
 
 }  // namespace unwrapd::segment

@@ -14,7 +14,7 @@ struct MappedRegion : Region {
   ExcessDistortion excess = {};  ///< of that map
   double area = 0;               ///< of the surface's 1
   double area_added = 0;         ///< of it, since all of it was last mapped
-  bool is_sound = false;         ///< its map is, or it is forced; what is neither merges no more
+  bool is_sound = false;         ///< its map is, or it is forced; else no union with it is tried
 
   [[nodiscard]] double mean_excess() const { return excess.worst() / area; }
 };
@@ -36,8 +36,9 @@ bool is_small_beside(const Region& b, const Region& a);
 /// added to a since all of it was mapped, the map of a stays (Region::mapped).
 MappedRegion unite(const MappedRegion& a, const MappedRegion& b, Region laid);
 
-/// Maps a region at any distortion: `impossible` where it is no disk, and `flawed` where there are
-/// flips or overlaps in the map, which is for an estimate of the excess. open: one a half-edge.
+/// Maps a region at any distortion. `impossible`: the region is no disk. `flawed`: the map has
+/// flips or overlaps, and the excess is an estimate. open: one a half-edge. Does not throw; a stop
+/// request ends it early, with any verdict.
 using MapAnyhow = std::function<TestResult(std::span<const char> open, Region& region)>;
 
 /// What joining regions needs of the surface, worked out once.
@@ -55,8 +56,8 @@ class Joiner {
   [[nodiscard]] Joined join(const MappedRegion& a, const MappedRegion& b,
                             std::span<const char> open, double cap, const TestRules& trial) const;
 
-  /// Both as one region where join() has found no sound map: from another start, or glued along a
-  /// part of their border, or else without a sound map.
+  /// Joins both although join() found no sound map. Tries all of their border from another start,
+  /// then parts of the border. If no map is sound, the part is glued at which least of b lies on a.
   [[nodiscard]] Joined force(const MappedRegion& a, const MappedRegion& b,
                              std::span<const char> open, const TestRules& trial,
                              const MapAnyhow& map) const;

@@ -103,6 +103,11 @@ Placement RegionPair::place(std::span<const Index> border) const {
   return placement;
 }
 
+double RegionPair::miss(std::span<const Index> border) const {
+  const std::vector<std::array<Vec2, 2>> pairs = ends(border);
+  return miss_of(pairs, motion_between(pairs));
+}
+
 double RegionPair::covered(const Placement& placement, std::span<const char> open) const {
   const std::vector<std::array<Vec2, 2>> sides = boundary_sides(surface_, open, a_);
   double covered = 0, all = 0;

@@ -29,6 +29,9 @@ class RegionPair {
   /// By the motion that brings these half-edges of b nearest to where they lie in a.
   [[nodiscard]] Placement place(std::span<const Index> border) const;
 
+  /// Placement::miss of place() alone.
+  [[nodiscard]] double miss(std::span<const Index> border) const;
+
   /// The share of b's area that lies on the map of a there, by some of its faces. open: as above.
   [[nodiscard]] double covered(const Placement& placement, std::span<const char> open) const;
 

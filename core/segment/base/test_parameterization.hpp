@@ -44,7 +44,7 @@ struct Region {
   std::vector<CornerUv> uv;  ///< one a face: its map so far, or a seed for it
   std::size_t mapped = 0;    ///< this many faces at the front have a sound map together, which
                              ///< stays as it is away from the others
-  bool is_forced = false;    ///< larger than it would be, for want of charts: no split is better
+  bool is_forced = false;    ///< joined only to keep to a number of charts; its map may overlap
 };
 
 class FailedTrials;

@@ -3,23 +3,31 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <set>
+#include <span>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "core/segment/base/merge.hpp"
 #include "core/segment/map_anyhow.hpp"
 #include "core/segment/settle_forced.hpp"
 #include "tests/core/hard_shapes.hpp"
 #include "tests/core/segment/cut_up.hpp"
+#include "tests/core/two_threads.hpp"
 #include "tests/core/unwrapped_surface.hpp"
 
 namespace unwrapd::segment {
 namespace {
 
-/// A star with six blunt arms, a branching tree, so to say.
+/// A star with six blunt arms.
 TriMesh star(int levels) {
   TriMesh mesh = shapes::sphere(levels);
   for (Vec3& p : mesh.positions) {
@@ -116,6 +124,34 @@ TEST(FewCharts, AreAllSharedOut) {
               std::size_t(most));
 }
 
+/// Sheets that want no second chart at 2.02 get none of those that are left at another bound.
+TEST(FewCharts, AreNotGivenToWhatWantsNoMore) {
+  const std::vector<TriMesh> sheets{shapes::grid(4, 4), moved(shapes::grid(4, 4), {5, 0, 0})};
+  const TriMesh mesh = shapes::merged(sheets);
+  EXPECT_EQ(faces_of(cut_up(mesh, {.max_distortion = 2.1, .max_charts = 50})).size(), 2U);
+}
+
+/// Blocks of an executor must not throw, whenever they are told to stop.
+TEST(FewCharts, AreGivenUpInBlocksOfAnyThread) {
+  charts::Charts whole = charts::components_of(shapes::surface_of(star(3)), {});
+  TwoThreads two;
+  for (const int patience : {1, 20, 60, 120, 200, 300, 400, 500}) {
+    std::stop_source source;
+    const std::jthread timer([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(patience));
+      source.request_stop();
+    });
+    std::vector<charts::Charts> surfaces{whole};
+    try {
+      segment_charts(surfaces, {.max_distortion = 2.02, .max_charts = 1}, {{}, source.get_token()},
+                     two);
+      EXPECT_EQ(surfaces.front().charts.size(), 1U);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+  }
+}
+
 /// Straight twigs along the axes, each from a place on an earlier one.
 TriMesh tree_of_voxels(unsigned seed) {
   std::mt19937 draw(seed);
@@ -145,8 +181,8 @@ TEST(FewCharts, AreKeptToOrANoteTellsIt) {
     }
 }
 
-/// A map that lies on itself is no start for a chart: another one is, or the component stays whole.
-TEST(SettleForced, FindsAMapWithoutOverlapsOrCutsTheComponent) {
+/// A map that lies on itself is no start for a chart.
+TEST(SettleForced, FindsAMapWithoutOverlaps) {
   charts::Chart ball =
       charts::components_of(shapes::surface_of(shapes::sphere(2)), {}).charts.at(0);
   charts::Chart bag = ball;
