@@ -47,11 +47,19 @@ UnwrapOptions bijective(Index most) {
 
 double worst(const Distortion& d) { return std::max(d.angle, d.area); }
 
-class FewCharts : public testing::TestWithParam<std::pair<std::string, TriMesh>> {};
+TriMesh shape_of(const std::string& name) {
+  if (name == "sphere") return shapes::sphere(3);
+  if (name == "star") return star(3);
+  if (name == "torus") return shapes::torus(24, 12);
+  return shapes::subdivided(shapes::pierced_bar(3));
+}
+
+class FewCharts : public testing::TestWithParam<std::string> {};
 
 TEST_P(FewCharts, AreNoMoreThanAskedAndNoWorseThanACut) {
-  const TriMesh& mesh = GetParam().second;
+  const TriMesh mesh = shape_of(GetParam());
   const std::size_t wanted = faces_of(cut_up(mesh, {.max_distortion = 2.02})).size();
+  ASSERT_GT(wanted, 1U);
   UnwrapOptions whole = bijective(1);
   whole.max_distortion.reset();
   const double cut = worst(unwrapped_surface(shapes::surface_of(mesh), whole).report.distortion);
@@ -69,12 +77,9 @@ TEST_P(FewCharts, AreNoMoreThanAskedAndNoWorseThanACut) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, FewCharts,
-    testing::Values(std::pair("sphere", shapes::sphere(3)), std::pair("star", star(3)),
-                    std::pair("pierced_bar", shapes::subdivided(shapes::pierced_bar(3))),
-                    std::pair("torus", shapes::torus(24, 12))),
-    [](const auto& shape) { return shape.param.first; });
+INSTANTIATE_TEST_SUITE_P(Shapes, FewCharts,
+                         testing::Values("sphere", "star", "torus", "pierced_bar"),
+                         [](const auto& shape) { return shape.param; });
 
 /// Two halves of a ball meet along one ring: glued all along it, nothing is left to lay flat.
 TEST(Force, HingesWhatWouldClose) {
@@ -166,19 +171,17 @@ TriMesh tree_of_voxels(unsigned seed) {
 }
 
 /// The limit may be missed where doubles have no map of a chart without overlaps; a note tells it.
+/// None of these trees is such a case.
 TEST(FewCharts, AreKeptToOrANoteTellsIt) {
-  for (unsigned seed = 1; seed <= 2; ++seed)
-    for (const Index most : {1}) {
-      const Report report =
-          unwrapped_surface(shapes::surface_of(tree_of_voxels(seed)), bijective(most)).report;
-      const Index allowed = std::max(most, report.input.components);
-      const bool is_noted = std::ranges::any_of(
-          report.notes, [](const Note& note) { return note.code == NoteCode::charts_exceeded; });
-      EXPECT_EQ(is_noted,
-                std::cmp_greater(report.charts.size(), allowed) || report.input.components > most)
-          << seed << ' ' << most << ' ' << report.charts.size();
-      EXPECT_EQ(report.overlaps, 0);
-    }
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const Report report =
+        unwrapped_surface(shapes::surface_of(tree_of_voxels(seed)), bijective(1)).report;
+    ASSERT_EQ(report.input.components, 1);
+    const bool is_noted = std::ranges::any_of(
+        report.notes, [](const Note& note) { return note.code == NoteCode::charts_exceeded; });
+    EXPECT_EQ(is_noted, report.charts.size() > 1) << seed;
+    EXPECT_EQ(report.overlaps, 0);
+  }
 }
 
 /// A map that lies on itself is no start for a chart.
