@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -121,8 +122,9 @@ class Cutter {
 
 /// What cutting came to.
 struct Cuts {
-  std::vector<Index> became;  ///< how many charts each component
-  Index rough = 0;            ///< components where noise leaves no room for the bound
+  std::vector<Index> became;       ///< how many charts each component
+  std::vector<std::size_t> faces;  ///< of each component
+  Index rough = 0;                 ///< components where noise leaves no room for the bound
 
   [[nodiscard]] Index charts() const {
     return std::accumulate(became.begin(), became.end(), Index(0));
@@ -181,6 +183,7 @@ Cuts cut_all(std::vector<charts::Charts>& surfaces, const Quotas& quotas,
         account.finish(faces);
       }
       cuts.became.push_back(static_cast<Index>(cutter.charts.size() - before));
+      cuts.faces.push_back(faces);
     }
     surface.charts = std::move(cutter.charts);
     cuts.rough += cutter.rough;
@@ -197,22 +200,27 @@ std::size_t count_of(const std::vector<charts::Charts>& surfaces) {
 }
 
 /// One chart for each component; what is left of `most` goes by how many they would like, and what
-/// rounding leaves of that to those that are furthest from it.
+/// rounding leaves of that to those that are furthest from it, of these to the ones of most faces.
 Quotas shared_out(const Cuts& wanted, Index most) {
   Quotas quotas{wanted.became, wanted.charts() <= most};
   const auto count = static_cast<Index>(quotas.most.size());
   const std::int64_t spare = std::max(most - count, 0), all = std::max(wanted.charts() - count, 1);
-  std::vector<std::pair<std::int64_t, std::size_t>> missing;  // less than one chart, component
+  struct Missing {
+    std::int64_t share = 0;  // of a chart
+    std::size_t faces = 0, component = 0;
+  };
+  std::vector<Missing> missing;
   std::int64_t left = wanted.charts() > count ? spare : 0;
   for (std::size_t k = 0; k < quotas.most.size(); ++k) {
     const std::int64_t share = spare * (wanted.became[k] - 1);
     quotas.most[k] = 1 + static_cast<Index>(share / all);
     left -= share / all;
-    missing.emplace_back(-(share % all), k);
+    missing.push_back({share % all, wanted.faces[k], k});
   }
-  std::ranges::sort(missing);
+  std::ranges::stable_sort(missing, std::greater(),
+                           [](const Missing& own) { return std::pair(own.share, own.faces); });
   for (std::int64_t k = 0; k < left; ++k)
-    ++quotas.most[missing[static_cast<std::size_t>(k)].second];
+    ++quotas.most[missing[static_cast<std::size_t>(k)].component];
   return quotas;
 }
 

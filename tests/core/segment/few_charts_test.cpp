@@ -129,6 +129,19 @@ TEST(FewCharts, AreAllSharedOut) {
               std::size_t(most));
 }
 
+/// Two small balls and a large one want as many charts each: the one that is left goes to the
+/// large.
+TEST(FewCharts, GoToTheLargestOfThoseThatWantAsMany) {
+  const std::vector<TriMesh> balls{shapes::sphere(2), moved(shapes::sphere(2), {5, 0, 0}),
+                                   moved(shapes::sphere(3), {10, 0, 0})};
+  const Cut cut = cut_up(shapes::merged(balls), {.max_distortion = 2.02, .max_charts = 4});
+  ASSERT_EQ(faces_of(cut).size(), 4U);
+  const Index first_of_large = 2 * shapes::sphere(2).face_count();
+  EXPECT_EQ(std::ranges::count_if(faces_of(cut),
+                                  [&](const auto& faces) { return faces[0] >= first_of_large; }),
+            2);
+}
+
 /// Sheets that want no second chart at 2.02 get none of those that are left at another bound.
 TEST(FewCharts, AreNotGivenToWhatWantsNoMore) {
   const std::vector<TriMesh> sheets{shapes::grid(4, 4), moved(shapes::grid(4, 4), {5, 0, 0})};
