@@ -24,29 +24,35 @@ namespace unwrapd::segment {
 namespace {
 
 constexpr double kAnyExcess = 1e6, kFarWeight = 10;  // beyond the bound, for a number of regions
+constexpr double kLittleExcess = 0.1;
 constexpr double kFacesOfQuick = 20, kQuickWeight = 1;
 constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
 constexpr std::array kFastSteps = {2.5, 5.0, 10.0};
 constexpr int kDecades = 4;
 constexpr double kSameBound = 1e-9;
 
-const MergeSettings kWhateverDistortion{
-    .budget = kAnyExcess, .cap = kAnyExcess, .distortion_weight = kFarWeight * kAnyExcess};
+/// Of merging up to so much excess, over budgets.
+MergeSettings settings_up_to(double excess) {
+  return {.budget = excess, .cap = excess, .distortion_weight = kFarWeight * excess};
+}
 
-/// Merges on to the allowed number of regions, at any distortion: first those that have a sound map
-/// side by side, then by force (Joiner::force()).
+/// Merges on to the allowed number of regions, at any distortion: within little of it, those that
+/// have a sound map side by side, then by force (Joiner::force()); then the same at any.
 Partition merge_to_limit(const MergeContext& context, Partition partition, Index most_regions,
                          Executor& executor) {
   if (partition.regions.size() <= static_cast<std::size_t>(most_regions)) return partition;
-  MergeSettings settings = kWhateverDistortion;
-  settings.enough = most_regions;
   const MergeContext own{context.surface, nullptr, nullptr, context.stop};
   const Joiner joiner(context.surface);
-  partition = merge_regions(own, joiner, std::move(partition), settings, executor);
-  settings.anyhow = [&](std::span<const char> open, Region& region) {
-    return map_anyhow(context.surface, open, context.stop, region);
-  };
-  return merge_regions(own, joiner, std::move(partition), settings, executor);
+  for (const double excess : {kLittleExcess, kAnyExcess}) {
+    MergeSettings settings = settings_up_to(excess);
+    settings.enough = most_regions;
+    partition = merge_regions(own, joiner, std::move(partition), settings, executor);
+    settings.anyhow = [&](std::span<const char> open, Region& region) {
+      return map_anyhow(context.surface, open, context.stop, region);
+    };
+    partition = merge_regions(own, joiner, std::move(partition), settings, executor);
+  }
+  return partition;
 }
 
 }  // namespace
@@ -84,7 +90,7 @@ Segments SurfaceSegmentation::first(double excess) {
 void SurfaceSegmentation::merge_across_kept_edges() {
   if (surface_.kept.empty()) return;
   const ExcessDistortion before = total_excess(partition_.regions);
-  MergeSettings settings = kWhateverDistortion;
+  MergeSettings settings = settings_up_to(kAnyExcess);
   settings.only_kept = true;
   partition_ = merge_regions({surface_, nullptr, nullptr, context_.stop}, Joiner(surface_),
                              std::move(partition_), settings, executor_);

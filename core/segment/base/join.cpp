@@ -228,6 +228,8 @@ Joined Joiner::force(const MappedRegion& a, const MappedRegion& b, std::span<con
     const TestResult result = by(cut, joined.region);
     joined.verdict = result.verdict;
     joined.region.excess = result.excess;
+    if (joined.verdict == Verdict::sound && result.excess.worst() > trial.most_excess)
+      joined.verdict = Verdict::distorted;
     joined.region.is_sound = joined.verdict != Verdict::impossible;
     joined.region.is_forced = true;
     return joined;

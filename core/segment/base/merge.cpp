@@ -174,7 +174,7 @@ class Merging {
   [[nodiscard]] Joined joined(const MappedRegion& a, const MappedRegion& b) const {
     TestRules trial{.stop = context_.stop, .memory = context_.failures};
     if (!settings_.anyhow) return joiner_.join(a, b, open_, settings_.cap, trial);
-    trial.most_excess = settings_.cap;
+    trial.most_excess = std::max(settings_.cap * (a.area + b.area), (a.excess + b.excess).worst());
     return joiner_.force(a, b, open_, trial, settings_.anyhow);
   }
 
