@@ -81,6 +81,31 @@ INSTANTIATE_TEST_SUITE_P(Shapes, FewCharts,
                          testing::Values("sphere", "star", "torus", "pierced_bar"),
                          [](const auto& shape) { return shape.param; });
 
+/// A ball rolled out like the peel of an orange, not pressed flat.
+TEST(FewCharts, StayWithinLittleDistortionWhereTheyCan) {
+  const Unwrapped one = unwrapped_surface(shapes::surface_of(shapes::sphere(3)), bijective(1));
+  EXPECT_EQ(one.report.charts.size(), 1U);
+  EXPECT_LE(worst(one.report.distortion), 2.05);
+}
+
+/// Where 2.02 needs as many charts as there may be, a tighter bound has no shorter seams.
+TEST(FewCharts, HaveNoLongerSeamsForALooserBound) {
+  for (const TriMesh& mesh : {shapes::torus(24, 12), star(3), shapes::sphere(3)}) {
+    double last = 0;
+    for (const double bound : {2.02, 2.01, 2.005}) {
+      UnwrapOptions options = bijective(2);
+      options.max_distortion = bound;
+      double seam = 0;
+      for (const ChartReport& chart :
+           unwrapped_surface(shapes::surface_of(mesh), options).report.charts)
+        seam += chart.seam_length;
+      ASSERT_GT(seam, 0);
+      EXPECT_GE(seam, last * (1 - 1e-9)) << bound;
+      last = seam;
+    }
+  }
+}
+
 /// Two halves of a ball meet along one ring: glued all along it, nothing is left to lay flat.
 TEST(Force, HingesWhatWouldClose) {
   const TriMesh mesh = shapes::sphere(2);
@@ -112,6 +137,9 @@ TEST(Force, HingesWhatWouldClose) {
   for (const Index h : both.slit) cut[std::size_t(h)] = 1;
   const auto seam = RegionPair(surface, half[0], half[1]).border(open).size();
   EXPECT_LT(both.slit.size(), 2 * seam);
+  half[1].is_forced = true;
+  const RegionPair pair(surface, half[0], half[1]);
+  EXPECT_TRUE(pair.place(pair.border(open)).both.is_forced);
   EXPECT_GT(both.slit.size(), 0U);
   for (const Index h : both.slit)
     EXPECT_EQ(cut[std::size_t(surface.halfedges.twin[std::size_t(h)])], 1);

@@ -156,11 +156,30 @@ TEST(Bijective, StopsWhenAsked) {
   EXPECT_EQ(uv, before);
 }
 
+/// A tube of 90 rings: Tutte's shrink by a factor each.
+TriMesh long_tube() {
+  return shapes::polar_disk(5, 90, kTurn, [](double r, double phi) {
+    const double radius = std::min(1.0, 90 * r);
+    return Vec3(radius * std::cos(phi), radius * std::sin(phi), 90 * r);
+  });
+}
+
+TEST(Bijective, BeginsFromTheMapThatIsGivenWhereThatIsInjective) {
+  const OwnedDisk d = disk_of(long_tube());
+  UvMap rings;
+  for (const Vec3& p : shapes::polar_disk(5, 90, kTurn, [](double r, double phi) {
+                         return Vec3(r * std::cos(phi), r * std::sin(phi), 0);
+                       }).positions)
+    rings.push_back(p.head<2>());
+  UvMap uv = rings;
+  EXPECT_TRUE(map_injectively(d.disk, {}, uv, rings));
+  EXPECT_TRUE(measure::is_plainly_injective(d.disk.faces, d.disk.loops, uv));
+  const UvMap collapsed(rings.size(), Vec2::Zero());
+  EXPECT_FALSE(map_injectively(d.disk, {}, uv, collapsed));
+}
+
 TEST(Bijective, LeavesTheMapWhereNoStartIsInjectiveInDoublePrecision) {
-  const OwnedDisk d = disk_of(shapes::polar_disk(5, 90, kTurn, [](double r, double phi) {
-    return Vec3(std::min(1.0, 90 * r) * std::cos(phi), std::min(1.0, 90 * r) * std::sin(phi),
-                90 * r);  // a tube of 90 rings: Tutte's shrink by a factor each
-  }));
+  const OwnedDisk d = disk_of(long_tube());
   UvMap uv(d.disk.positions.size(), Vec2(1, 2));
   const UvMap before = uv;
   EXPECT_FALSE(map_injectively(d.disk, {}, uv));
