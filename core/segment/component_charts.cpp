@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/measure/distortion.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/segment/base/search_extent.hpp"
 #include "core/segment/large_charts.hpp"
@@ -34,12 +35,11 @@ class ComponentSearch {
     std::vector<charts::Chart> parts;
     if (given_.may_stay_whole) parts = kept_whole(rules);
     if (parts.empty()) parts = segmented_charts(rules);
-    return {settle_forced(component_, std::move(parts), rules.stop), is_rough_};
+    return {std::move(parts), is_rough_};
   }
 
  private:
-  /// A bound below kDefaultDistortion is reached from that, step by step (ADR 0066), unless there
-  /// are already as many charts as there may be.
+  /// A bound below kDefaultDistortion is reached from that, step by step (ADR 0066).
   std::vector<charts::Chart> segmented_charts(SegmentRules rules) {
     const TightBounds tight = tight_bounds(rules.max_distortion, rules.effort);
     const auto searches = static_cast<double>(tight.searched.size() + 1);
@@ -47,7 +47,6 @@ class ComponentSearch {
     std::vector<charts::Chart> parts;
     if (given_.may_stay_whole && tight.count > 0) parts = kept_whole(rules);
     if (parts.empty()) parts = parts_of(for_part_of_work(rules, 0, 1 / searches));
-    if (std::cmp_greater_equal(parts.size(), rules.most_regions)) return parts;
     const bool was_rough = std::exchange(is_rough_, false);
     std::vector<std::vector<charts::Chart>> found;
     for (const double bound : tight.searched) {
@@ -55,7 +54,8 @@ class ComponentSearch {
       SegmentRules own = for_part_of_work(rules, done / searches, (done + 1) / searches);
       own.max_distortion = bound;
       found.push_back(parts_of(own));
-      if (std::exchange(is_rough_, false)) found.back().clear();  // it keeps another bound
+      const bool is_rough = std::exchange(is_rough_, false);  // it keeps another bound
+      if (is_rough || is_forced_in_vain(found.back(), parts)) found.back().clear();
     }
     for (std::size_t k = 0; k < tight.count; ++k) {
       rules.max_distortion = tight.searched[k];
@@ -65,6 +65,21 @@ class ComponentSearch {
     }
     is_rough_ = is_rough_ || was_rough;
     return parts;
+  }
+
+  /// Whether charts for a tighter bound that had to be few have more distortion than the looser
+  /// ones.
+  [[nodiscard]] bool is_forced_in_vain(const std::vector<charts::Chart>& tighter,
+                                       const std::vector<charts::Chart>& looser) const {
+    return std::cmp_greater_equal(tighter.size(), given_.segment.most_regions) &&
+           excess_of_starts(tighter) > excess_of_starts(looser);
+  }
+
+  [[nodiscard]] double excess_of_starts(const std::vector<charts::Chart>& charts) const {
+    double excess = 0;
+    for (const charts::Chart& chart : charts)
+      excess += excess_of(measure::distortion_sums(chart.mesh, chart.start, executor_)).worst();
+    return excess;
   }
 
   /// Charts for a tighter bound, whose seams are not shorter than the looser ones': the best that
@@ -100,10 +115,12 @@ class ComponentSearch {
     return whole;
   }
 
+  /// Settled before bounds are compared, since a map that overlaps may have any seams.
   std::vector<charts::Chart> parts_of(const SegmentRules& rules) {
     std::vector<charts::Chart> parts;
     if (given_.symmetry == Symmetry::automatic) parts = symmetric_parts(rules);
-    return parts.empty() ? searched_parts(component_, rules) : parts;
+    if (parts.empty()) parts = searched_parts(component_, rules);
+    return settle_forced(component_, std::move(parts), rules.stop);
   }
 
   /// None where there is no mirror, or where the component is too large to be searched whole.
