@@ -6,15 +6,20 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <queue>
 #include <utility>
+
+#include "core/segment/base/labels.hpp"
 
 namespace unwrapd::segment::search {
 namespace {
 
-class Halving {
+constexpr double kLeastPart = 0.08;  // of the region's area, before a neck
+
+class Bisection {
  public:
-  Halving(const SegmentationMesh& surface, const Partition& partition, const Region& region)
+  Bisection(const SegmentationMesh& surface, const Partition& partition, const Region& region)
       : surface_(surface),
         open_(partition.open),
         region_(region),
@@ -24,18 +29,70 @@ class Halving {
   }
 
   /// Of each face of the region: 0 or 1.
-  [[nodiscard]] std::vector<char> find() const {
-    const std::size_t a = farthest(distances(0));
-    const std::vector<double> from_a = distances(a);
+  [[nodiscard]] std::vector<char> find(std::size_t way) const {
+    return way == 0 ? halves() : cut_at_neck(distances_from_tip(way));
+  }
+
+ private:
+  static std::size_t farthest(const std::vector<double>& distance) {
+    return static_cast<std::size_t>(std::ranges::max_element(distance) - distance.begin());
+  }
+
+  [[nodiscard]] std::vector<char> halves() const {
+    const std::vector<double> from_a = distances_from_tip(1);
     const std::vector<double> from_b = distances(farthest(from_a));
     std::vector<char> half(from_a.size());
     for (std::size_t k = 0; k < half.size(); ++k) half[k] = from_b[k] < from_a[k] ? 1 : 0;
     return half;
   }
 
- private:
-  static std::size_t farthest(const std::vector<double>& distance) {
-    return static_cast<std::size_t>(std::ranges::max_element(distance) - distance.begin());
+  /// The first tip is farthest from face 0, each other one from the tips before it.
+  [[nodiscard]] std::vector<double> distances_from_tip(std::size_t number) const {
+    std::vector<double> from_tip = distances(farthest(distances(0))), from_nearest = from_tip;
+    for (std::size_t n = 1; n < number; ++n) {
+      from_tip = distances(farthest(from_nearest));
+      for (std::size_t k = 0; k < from_tip.size(); ++k)
+        from_nearest[k] = std::min(from_nearest[k], from_tip[k]);
+    }
+    return from_tip;
+  }
+
+  /// Of all cuts at one distance: the shortest for the area of the smaller part (Cheeger's ratio).
+  [[nodiscard]] std::vector<char> cut_at_neck(const std::vector<double>& from_tip) const {
+    std::vector<std::size_t> order(from_tip.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::less(), [&](std::size_t k) { return from_tip[k]; });
+    double all = 0, near = 0, width = 0, least = std::numeric_limits<double>::infinity();
+    for (const Index t : region_.faces) all += surface_.area(t);
+    std::vector<char> is_near(order.size(), 0);
+    std::size_t cut = 0;
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      width += change_of_width(order[n], is_near);
+      is_near[order[n]] = 1;
+      near += surface_.area(region_.faces[order[n]]);
+      const double smaller = std::min(near, all - near);
+      if (smaller < kLeastPart * all || rounded(width / smaller) >= least) continue;
+      least = rounded(width / smaller);
+      cut = n + 1;
+    }
+    for (std::size_t n = cut; n < order.size(); ++n) is_near[order[n]] = 0;
+    return is_near;
+  }
+
+  /// Of the cut around the near faces, when face k is added to them.
+  [[nodiscard]] double change_of_width(std::size_t k, const std::vector<char>& is_near) const {
+    double change = 0;
+    for (Index h = 3 * region_.faces[k]; h < 3 * region_.faces[k] + 3; ++h)
+      if (const std::optional<std::size_t> other = across(h))
+        change += is_near[*other] != 0 ? -surface_.length[h] : surface_.length[h];
+    return change;
+  }
+
+  /// The face of the region that is glued there.
+  [[nodiscard]] std::optional<std::size_t> across(Index h) const {
+    const Index twin = surface_.halfedges.twin[h];
+    if (twin == kNoTwin || open_[h] != 0 || number_[face_of(twin)] < 0) return std::nullopt;
+    return static_cast<std::size_t>(number_[face_of(twin)]);
   }
 
   [[nodiscard]] Vec2 middle(std::size_t k) const {
@@ -55,15 +112,15 @@ class Halving {
       front.pop();
       if (own > distance[k]) continue;
       for (Index h = 3 * region_.faces[k]; h < 3 * region_.faces[k] + 3; ++h) {
-        const Index twin = surface_.halfedges.twin[h];
-        if (twin == kNoTwin || open_[h] != 0 || number_[face_of(twin)] < 0) continue;
-        const auto other = static_cast<std::size_t>(number_[face_of(twin)]);
-        const double way = own + (middle(k) - middle(other)).norm();
-        if (!(way < distance[other])) continue;
-        distance[other] = way;
-        front.push({way, other});
+        const std::optional<std::size_t> other = across(h);
+        if (!other) continue;
+        const double way = own + (middle(k) - middle(*other)).norm();
+        if (!(way < distance[*other])) continue;
+        distance[*other] = way;
+        front.push({way, *other});
       }
     }
+    for (double& d : distance) d = rounded(d);
     return distance;
   }
 
@@ -76,10 +133,10 @@ class Halving {
 }  // namespace
 
 std::optional<Partition> bisect(const MergeContext& context, const Partition& partition,
-                                std::size_t k) {
+                                std::size_t k, std::size_t way) {
   const SegmentationMesh& surface = context.surface;
   const Region& whole = partition.regions[k];
-  const std::vector<char> half = Halving(surface, partition, whole).find();
+  const std::vector<char> half = Bisection(surface, partition, whole).find(way);
   std::array<MappedRegion, 2> parts;
   for (std::size_t f = 0; f < half.size(); ++f) {
     MappedRegion& part = parts[static_cast<std::size_t>(half[f])];

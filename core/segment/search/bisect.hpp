@@ -7,10 +7,14 @@
 
 namespace unwrapd::segment::search {
 
-/// The partition with region k in two halves. Two faces that lie about as far apart as any in the
-/// region are the seeds; each face goes to the nearer one. Empty where a half has no sound map. The
-/// second half comes last.
+/// How a region may come apart in two: halfway, or at the neck before one of three of its tips.
+inline constexpr std::size_t kWaysToBisect = 4;
+
+/// The partition with region k in two parts. Way 0: two faces that lie about as far apart as any in
+/// the region are the seeds; each face goes to the nearer one. Way n: one part is what lies within
+/// some distance of tip n, where the cut is short for the area of the smaller part; tips are faces
+/// far from each other. Empty where a part has no sound map. The second part comes last.
 std::optional<Partition> bisect(const MergeContext& context, const Partition& partition,
-                                std::size_t k);
+                                std::size_t k, std::size_t way = 0);
 
 }  // namespace unwrapd::segment::search

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/segment/base/labels.hpp"
+#include "core/segment/search/bisect.hpp"
 #include "core/segment/search/close_slits.hpp"
 #include "core/segment/search/merge_search.hpp"
 #include "core/solve/base/parallel_map.hpp"
@@ -20,6 +21,7 @@ namespace {
 constexpr int kHalvesInVain = 4;  // that are tried where a page is far from full
 constexpr double kMuchEmptiness = 0.2;
 constexpr double kNearlyAsLong = 0.7;  // of the longest region
+constexpr double kAny = std::numeric_limits<double>::infinity();
 
 /// Of the box of a region's map.
 double longer_side(const Region& region) {
@@ -51,23 +53,30 @@ bool MergeSearch::is_far_from_full(const PartitionCost& cost) {
   return cost.all - cost.seams > kMuchEmptiness * kCostOfEmptiness;
 }
 
+/// Each way to part one of the longest regions, with its cost.
+std::vector<Candidate> MergeSearch::all_halves(const Candidate& whole) {
+  const std::vector<std::size_t> longest = long_regions(whole.partition.regions);
+  std::vector<Candidate> halved =
+      solve::parallel_map<Candidate>(longest.size() * kWaysToBisect, executor_, [&](std::size_t k) {
+        return with_halves(whole, longest[k / kWaysToBisect], k % kWaysToBisect);
+      });
+  learn(halved);
+  halved = distinct(std::move(halved));
+  const double limit = is_far_from_full(whole.cost) ? kAny : whole.cost.all;
+  return solve::parallel_map<Candidate>(halved.size(), executor_, [&](std::size_t k) {
+    return price_halves(std::move(halved[k]), limit);
+  });
+}
+
 Candidate MergeSearch::bisect_regions(Candidate whole) {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
   Candidate best = price_halves(std::move(whole), kAny), now = best;
   for (int in_vain = 0; now.cost.all > now.cost.seams;) {
-    const std::vector<std::size_t> longest = long_regions(now.partition.regions);
-    std::vector<Candidate> halved = solve::parallel_map<Candidate>(
-        longest.size(), executor_, [&](std::size_t k) { return with_halves(now, longest[k]); });
-    learn(halved);
-    auto next = std::ranges::min_element(halved, std::less(),
-                                         [](const Candidate& own) { return own.cost.all; });
+    std::vector<Candidate> halved = all_halves(now);
+    const auto next = std::ranges::min_element(halved, std::less(),
+                                               [](const Candidate& own) { return own.cost.all; });
+    if (next == halved.end()) break;
     const bool is_better = next->cost.all < best.cost.all;
-    if (!is_better) {
-      if (in_vain == kHalvesInVain || !is_far_from_full(now.cost)) break;
-      next = std::ranges::find_if(
-          halved, [](const Candidate& own) { return !own.partition.regions.empty(); });
-      if (next == halved.end()) break;
-    }
+    if (!is_better && (in_vain == kHalvesInVain || !is_far_from_full(now.cost))) break;
     in_vain = is_better ? 0 : in_vain + 1;
     now = std::move(*next);
     if (is_better) best = now;

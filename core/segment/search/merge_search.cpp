@@ -37,8 +37,8 @@ constexpr double kNoiseOfRepairs = 0.3, kMergesOfARound = 0.3;
 constexpr int kFirstSeedOfRepairs = 300;
 constexpr double kFittingFill = 0.72;  // see MergeSettings::least_fill
 constexpr double kLargeRegion = 0.1;   // that is worth bisecting
-const CostRules kUsual{.chart = 0.8, .small_chart = 0.4, .wanted_fill = 0.68};
-const CostRules kAcross{.chart = 0.3, .small_chart = 0.12, .wanted_fill = 0.665};  // to bisect for
+const CostRules kUsual{.chart = 0.8, .small_chart = 0.4, .wanted_fill = 0.69};
+const CostRules kAcross{.chart = 0.5, .small_chart = 0.2, .wanted_fill = 0.68};  // to bisect for
 constexpr double kFacesOfAMerge = 20, kMergesOfFinishing = 1;  // for each face; in merges
 constexpr std::size_t kAbreast = 4, kRoundsOfAStep = 4;        // merges at once; see widen()
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -246,16 +246,15 @@ Candidate MergeSearch::remerge_part(const Candidate& best, std::size_t number) c
   return price(std::move(again), best.cost.all, kUsual);
 }
 
-Candidate MergeSearch::with_halves(const Candidate& whole, std::size_t k) const {
+/// Nothing where the region is too small for that, or a half has no sound map.
+Candidate MergeSearch::with_halves(const Candidate& whole, std::size_t k, std::size_t way) const {
   if (whole.partition.regions[k].area < kLargeRegion) return {};
-  Candidate apart = track([&](const MergeContext& context) {
-    std::optional<Partition> cut = bisect(context, whole.partition, k);
+  return track([&](const MergeContext& context) {
+    std::optional<Partition> cut = bisect(context, whole.partition, k, way);
     if (!cut) return Partition{};
-    shorten_seams(context, settings_, *cut);
+    shorten_between(context, settings_, k, cut->regions.size() - 1, *cut);
     return std::move(*cut);
   });
-  if (apart.partition.regions.empty()) return apart;
-  return price_halves(std::move(apart), is_far_from_full(whole.cost) ? kInfinity : whole.cost.all);
 }
 
 Candidate MergeSearch::price_halves(Candidate own, double limit) const {

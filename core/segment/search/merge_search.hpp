@@ -82,7 +82,8 @@ class MergeSearch {
   /// Whether bisecting goes on though it gains nothing yet.
   static bool is_far_from_full(const PartitionCost& cost);
   [[nodiscard]] Candidate price_halves(Candidate own, double limit) const;
-  [[nodiscard]] Candidate with_halves(const Candidate& whole, std::size_t k) const;
+  [[nodiscard]] Candidate with_halves(const Candidate& whole, std::size_t k, std::size_t way) const;
+  std::vector<Candidate> all_halves(const Candidate& whole);
   [[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> all) const;
   [[nodiscard]] Candidate price(Candidate own, double limit, CostRules rules) const;
 

@@ -12,6 +12,10 @@ namespace unwrapd::segment::search {
 namespace {
 
 constexpr double kMostPage = 1.5;  // of the surface
+constexpr double kGrid = 0x1p22;   // steps on the side of the surface's area
+
+/// Without the last digits: what differs by rounding alone is packed in the same way.
+Vec2 on_grid(const Vec2& uv) { return (kGrid * uv).array().round() / kGrid; }
 
 std::vector<charts::Outline> outlines(const SegmentationMesh& surface, const Partition& partition,
                                       const std::vector<Index>& owner) {
@@ -24,7 +28,7 @@ std::vector<charts::Outline> outlines(const SegmentationMesh& surface, const Par
         const CornerUv& uv = region.uv[f];
         if (twin == kNoTwin || partition.open[h] != 0 ||
             owner[face_of(twin)] != static_cast<Index>(k))
-          all[k].push_back({uv[i], uv[(i + 1) % 3]});
+          all[k].push_back({on_grid(uv[i]), on_grid(uv[(i + 1) % 3])});
       }
   }
   return all;

@@ -42,6 +42,13 @@ class Shortening {
     for (const Chain& row : seams_.rows()) shorten(row);
   }
 
+  void run_between(Index a, Index b) {
+    for (const Chain& row : seams_.rows()) {
+      const Index left = seams_.owner(row.front()), right = seams_.owner(twin(row.front()));
+      if ((left == a && right == b) || (left == b && right == a)) shorten(row);
+    }
+  }
+
  private:
   [[nodiscard]] Index twin(Index h) const { return surface_.halfedges.twin[h]; }
 
@@ -252,6 +259,13 @@ void shorten_seams(const MergeContext& context, const MergeSettings& settings,
                    Partition& partition) {
   for (int round = 0; round < kRounds; ++round)
     Shortening(context, settings, kNeverHalved, partition).run();
+}
+
+void shorten_between(const MergeContext& context, const MergeSettings& settings, std::size_t a,
+                     std::size_t b, Partition& partition) {
+  for (int round = 0; round < kRounds; ++round)
+    Shortening(context, settings, kNeverHalved, partition)
+        .run_between(static_cast<Index>(a), static_cast<Index>(b));
 }
 
 void shorten_in_parts(const MergeContext& context, const MergeSettings& settings,

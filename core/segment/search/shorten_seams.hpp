@@ -12,6 +12,10 @@ namespace unwrapd::segment::search {
 void shorten_seams(const MergeContext& context, const MergeSettings& settings,
                    Partition& partition);
 
+/// The same for the rows between regions a and b alone.
+void shorten_between(const MergeContext& context, const MergeSettings& settings, std::size_t a,
+                     std::size_t b, Partition& partition);
+
 /// The same where a whole stretch cannot be straight: its halves, their halves, and so on. Takes
 /// longer: for the last partition.
 void shorten_in_parts(const MergeContext& context, const MergeSettings& settings,

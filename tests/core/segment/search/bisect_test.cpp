@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -25,13 +26,90 @@ SegmentationMesh open_ring() {
   return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
 }
 
+/// One region for each value of label(middle of a face), in the plane.
+template <class Label>
+Partition flat_parts(const SegmentationMesh& surface, Label label) {
+  Partition parts{{}, std::vector<char>(surface.length.size(), 0)};
+  for (Index t = 0; t < surface.face_count(); ++t) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : surface.mesh.faces[std::size_t(t)])
+      middle += surface.mesh.positions[std::size_t(v)] / 3;
+    const auto k = std::size_t(label(middle));
+    if (parts.regions.size() <= k) parts.regions.resize(k + 1);
+    parts.regions[k].faces.push_back(t);
+    parts.regions[k].area += surface.area(t);
+  }
+  for (MappedRegion& region : parts.regions) {
+    region.uv = projected(surface, region.faces);
+    region.is_sound = true;
+  }
+  return parts;
+}
+
 Partition whole(const SegmentationMesh& surface) {
-  MappedRegion all;
-  for (Index t = 0; t < surface.face_count(); ++t) all.faces.push_back(t);
-  all.uv = projected(surface, all.faces);
-  all.area = 1;
-  all.is_sound = true;
-  return {{all}, std::vector<char>(surface.length.size(), 0)};
+  return flat_parts(surface, [](const Vec3&) { return 0; });
+}
+
+/// The faces of a sheet, with squares of side 1, whose middles fulfil a condition.
+template <class IsIn>
+SegmentationMesh cut_out(Index columns, Index rows, IsIn is_in) {
+  TriMesh mesh = shapes::grid(columns, rows, columns, rows);
+  std::erase_if(mesh.faces, [&](const Triangle& face) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : face) middle += mesh.positions[std::size_t(v)] / 3;
+    return !is_in(middle.x(), middle.y());
+  });
+  return make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+}
+
+/// The share of the area that the smaller part of two has.
+double smaller_part(const Partition& parts) {
+  return std::min(parts.regions[0].area, parts.regions[1].area);
+}
+
+/// Between a plate and a square lies a bridge, 4 wide and 8 long.
+TEST(Bisect, CutsAtTheNeckBeforeATip) {
+  const SegmentationMesh surface = cut_out(48, 16, [](double x, double y) {
+    return x < 32 || (x < 40 ? std::abs(y - 8) < 2 : std::abs(y - 8) < 4);
+  });
+  const double all = 32 * 16 + 8 * 4 + 8 * 8;
+  const auto cut = bisect({surface}, whole(surface), 0, 1);
+  ASSERT_TRUE(cut);
+  EXPECT_GT(smaller_part(*cut), 8 * 8 / all - 0.01);
+  EXPECT_LT(smaller_part(*cut), (8 * 4 + 8 * 8) / all + 0.01);
+  const auto halfway = bisect({surface}, whole(surface), 0);
+  ASSERT_TRUE(halfway);
+  EXPECT_GT(smaller_part(*halfway), 0.3);
+}
+
+/// A square with a stub of a twentieth of the area.
+TEST(Bisect, CutsNothingOffThatIsTooSmall) {
+  const SegmentationMesh surface =
+      cut_out(16, 12, [](double x, double y) { return x < 12 || std::abs(y - 6) < 1; });
+  for (std::size_t way = 1; way < kWaysToBisect; ++way) {
+    const auto cut = bisect({surface}, whole(surface), 0, way);
+    ASSERT_TRUE(cut) << way;
+    EXPECT_GE(smaller_part(*cut), 0.08 - 1e-9) << way;
+  }
+}
+
+/// A square with a tail, whose tip is a region: halves would part the square.
+TEST(Bisect, TakesATailOffWhereAPageStaysEmpty) {
+  const SegmentationMesh surface =
+      cut_out(44, 24, [](double x, double y) { return x < 24 || std::abs(y - 12) < 2; });
+  const double all = 24 * 24 + 20 * 4;
+  const double right =
+      std::ranges::max(surface.mesh.positions, {}, [](const Vec3& p) { return p.x(); }).x();
+  const Partition tailed = flat_parts(surface, [&](const Vec3& middle) {
+    return (right - middle.x()) * std::sqrt(all) < 4 ? 1 : 0;
+  });
+  ProgressEstimate untold({});
+  FailedTrials failures;
+  SerialExecutor serial;
+  MergeSearch search({surface, &untold, &failures}, tailed, {.budget = 1, .cap = 1}, {}, serial);
+  const Partition found = search.bisect_regions({tailed}).partition;
+  EXPECT_EQ(found.regions.size(), 3U);
+  EXPECT_NEAR(std::ranges::max(found.regions, {}, &MappedRegion::area).area, 24 * 24 / all, 0.01);
 }
 
 TEST(Bisect, CutsARingAcrossWhereItIsFarthestFromItsEnds) {
@@ -66,17 +144,8 @@ TEST(Bisect, HalvesAllLongRegionsWhereOneAloneGainsNothing) {
   const TriMesh mesh = shapes::grid(160, 4, 160, 4);
   const SegmentationMesh surface =
       make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
-  Partition strips{std::vector<MappedRegion>(4), std::vector<char>(surface.length.size(), 0)};
-  for (Index t = 0; t < surface.face_count(); ++t) {
-    double y = 0;
-    for (const Index v : mesh.faces[std::size_t(t)]) y += mesh.positions[std::size_t(v)].y() / 3;
-    strips.regions[std::size_t(y)].faces.push_back(t);
-  }
-  for (MappedRegion& strip : strips.regions) {
-    strip.uv = projected(surface, strip.faces);
-    strip.area = 0.25;
-    strip.is_sound = true;
-  }
+  const Partition strips = flat_parts(
+      surface, [](const Vec3& middle) { return std::floor(middle.y() * std::sqrt(640) + 2); });
   ProgressEstimate untold({});
   FailedTrials failures;
   SerialExecutor serial;

@@ -97,6 +97,23 @@ TEST(ShortenSeams, MakesAZigzagBetweenRegionsStraight) {
   expect_whole_and_sound(surface, halves);
 }
 
+/// Three stripes with zigzags between them.
+TEST(ShortenSeams, MovesNoRowsButThoseBetweenTwoRegions) {
+  const SegmentationMesh surface = sheet();
+  Partition stripes = parted(surface, [](const Vec3& m) {
+    const double y = m.y() - zigzag(m.x() + 0.5);
+    return y < -0.2 ? 0 : y < 0.2 ? 1 : 2;
+  });
+  const std::vector<Index> before = owners(surface, stripes);
+  const double length = seam_length(surface, stripes);
+  shorten_between({surface}, {.budget = 1, .cap = 1}, 2, 1, stripes);
+  EXPECT_LT(seam_length(surface, stripes), 0.85 * length);
+  const std::vector<Index> after = owners(surface, stripes);
+  for (std::size_t t = 0; t < after.size(); ++t) EXPECT_EQ(after[t] == 0, before[t] == 0);
+  EXPECT_NE(after, before);
+  expect_whole_and_sound(surface, stripes);
+}
+
 Index tip_of(const SegmentationMesh& surface) {
   const auto height = [](const Vec3& p) { return p.z(); };
   const auto& places = surface.mesh.positions;
