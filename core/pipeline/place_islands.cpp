@@ -42,6 +42,16 @@ void note_stacks(const pack::PackResult& packed, Report& report) {
                                         " islands are stacked on another of the same shape."});
 }
 
+void note_one_group(PageGroup group, Report& report) {
+  if (report.page_names.size() != 1) return;
+  report.notes.push_back(
+      {NoteCode::option_unused,
+       group == PageGroup::mesh
+           ? "The option group=mesh has no effect, because all charts are of one mesh. All objects "
+             "of an OBJ are one mesh; export them as glTF to give each a page."
+           : "The option group=material has no effect, because all charts have one material."});
+}
+
 /// The page of each island: that of its group, in the order in which groups occur. Throws
 /// Error{does_not_fit}.
 std::vector<Index> pages_of(const std::vector<std::string>& groups, Report& report) {
@@ -107,6 +117,7 @@ void place_islands(const IslandsToPlace& islands, const UnwrapOptions& options, 
   report.fill = covered / packed.pages / page.aspect();
   note_padding(packed, options.padding, report);
   note_stacks(packed, report);
+  note_one_group(options.packing.group, report);
 }
 
 void to_uvs(UvMap& map, const PageSize& page) {

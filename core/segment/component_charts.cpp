@@ -1,13 +1,14 @@
 #include "core/segment/component_charts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 
-#include "core/measure/distortion.hpp"
 #include "core/measure/rest_triangle.hpp"
 #include "core/segment/base/search_extent.hpp"
+#include "core/segment/chart_excess.hpp"
 #include "core/segment/large_charts.hpp"
 #include "core/segment/region_charts.hpp"
 #include "core/segment/segment_symmetrically.hpp"
@@ -19,6 +20,7 @@ namespace unwrapd::segment {
 namespace {
 
 constexpr double kShareOfStandIn = 0.25;  // of the work, on the first stand-in
+constexpr Index kAnyNumber = std::numeric_limits<Index>::max();
 
 SegmentRules for_part_of_work(SegmentRules rules, double begin, double end) {
   rules.on_progress = part_of_progress(std::move(rules.on_progress), begin, end);
@@ -71,15 +73,12 @@ class ComponentSearch {
   /// ones.
   [[nodiscard]] bool is_forced_in_vain(const std::vector<charts::Chart>& tighter,
                                        const std::vector<charts::Chart>& looser) const {
-    return std::cmp_greater_equal(tighter.size(), given_.segment.most_regions) &&
-           excess_of_starts(tighter) > excess_of_starts(looser);
-  }
-
-  [[nodiscard]] double excess_of_starts(const std::vector<charts::Chart>& charts) const {
-    double excess = 0;
-    for (const charts::Chart& chart : charts)
-      excess += excess_of(measure::distortion_sums(chart.mesh, chart.start, executor_)).worst();
-    return excess;
+    const SegmentRules& rules = given_.segment;
+    if (rules.most_regions == kAnyNumber) return false;
+    const auto excess = [&](const std::vector<charts::Chart>& charts) {
+      return chart_excess(charts, executor_, rules.stop).mean.worst();
+    };
+    return excess(tighter) > excess(looser);
   }
 
   /// Charts for a tighter bound, whose seams are not shorter than the looser ones': the best that
@@ -99,7 +98,8 @@ class ComponentSearch {
     const SplitChart split = [&](const charts::Chart& chart, double bound) {
       SegmentRules parts = rules_of_chart(rules, component_, chart);
       parts.max_distortion = bound;
-      return searched_parts(as_component(component_, chart), parts);
+      const charts::Chart alone = as_component(component_, chart);
+      return settle_forced(alone, searched_parts(alone, parts), parts.stop);
     };
     return tighten(std::move(looser), rules.max_distortion, rules.most_regions, split, executor_,
                    rules.stop);

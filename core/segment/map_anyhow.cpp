@@ -10,8 +10,14 @@ namespace unwrapd::segment {
 namespace {
 
 constexpr double kEstimateTolerance = 1e-2;  // of energy, from iteration to iteration
-constexpr double kFlawed = 3;                // times the excess of a sound map
+constexpr std::size_t kMostPairs = 20;       // that are counted, for each face
 constexpr double kUnknown = 1e3;             // excess, where no map was found
+
+/// Pairs of faces that overlap, for each face.
+double overlapping_share(std::span<const Triangle> faces, const UvMap& uv) {
+  const std::size_t pairs = measure::overlapping_pairs(faces, uv, kMostPairs * faces.size()).size();
+  return static_cast<double>(pairs) / static_cast<double>(faces.size());
+}
 
 }  // namespace
 
@@ -31,7 +37,8 @@ TestResult map_anyhow(const SegmentationMesh& surface, std::span<const char> ope
     for (std::size_t i = 0; i < 3; ++i)
       region.uv[t][i] = disk.unit * solution.uv[own.mesh.faces[t][i]];
   const bool is_sound = measure::is_plainly_injective(own.mesh.faces, own.loops, solution.uv, stop);
-  const double energy = disk.unit * disk.unit * solution.energy.back() + (is_sound ? 0 : kFlawed);
+  double energy = disk.unit * disk.unit * solution.energy.back();
+  if (!is_sound) energy += kFlawedExcess * (1 + overlapping_share(own.mesh.faces, solution.uv));
   return {is_sound ? Verdict::sound : Verdict::flawed, {energy, energy}};
 } catch (const Error&) {  // told to stop, or there is no map; a block must not throw
   return {Verdict::flawed, {kUnknown, kUnknown}};

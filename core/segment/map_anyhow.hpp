@@ -8,9 +8,12 @@
 
 namespace unwrapd::segment {
 
-/// See MapAnyhow. ARAP from a convex map. Where that is flawed, the excess is several times as
-/// high: a map without flips and overlaps is going to cost more. Does not throw; a stop request
-/// ends it early, with any verdict.
+/// What a flawed map is taken to cost beside its energy: one without flips and overlaps is going to
+/// cost more.
+inline constexpr double kFlawedExcess = 3;
+
+/// See MapAnyhow. ARAP from a convex map. Does not throw; a stop request ends it early, with any
+/// verdict.
 TestResult map_anyhow(const SegmentationMesh& surface, std::span<const char> open,
                       const std::stop_token& stop, Region& region);
 

@@ -25,6 +25,7 @@ namespace {
 
 constexpr double kAnyExcess = 1e6, kFarWeight = 10;  // beyond the bound, for a number of regions
 constexpr double kLittleExcess = 0.1;
+constexpr double kNoiseOfForce = 0.3;
 constexpr double kFacesOfQuick = 20, kQuickWeight = 1;
 constexpr std::array kSteps = {1.5, 2.0, 2.5, 3.5, 5.0, 7.5, 10.0};  // of excess, in each decade
 constexpr std::array kFastSteps = {2.5, 5.0, 10.0};
@@ -37,22 +38,41 @@ MergeSettings settings_up_to(double excess) {
 }
 
 /// Merges on to the allowed number of regions, at any distortion: within little of it, those that
-/// have a sound map side by side, then by force (Joiner::force()); then the same at any.
-Partition merge_to_limit(const MergeContext& context, Partition partition, Index most_regions,
-                         Executor& executor) {
-  if (partition.regions.size() <= static_cast<std::size_t>(most_regions)) return partition;
-  const MergeContext own{context.surface, nullptr, nullptr, context.stop};
+/// have a sound map side by side, then by force (Joiner::force()); then the same at any. seed: of
+/// the order of unions; 0: by what they are worth.
+Partition merge_by_force(const MergeContext& context, Partition partition, Index most_regions,
+                         int seed, Executor& executor) {
   const Joiner joiner(context.surface);
   for (const double excess : {kLittleExcess, kAnyExcess}) {
     MergeSettings settings = settings_up_to(excess);
     settings.enough = most_regions;
-    partition = merge_regions(own, joiner, std::move(partition), settings, executor);
+    settings.seed = seed;
+    settings.noise = seed == 0 ? 0 : kNoiseOfForce;
+    partition = merge_regions(context, joiner, std::move(partition), settings, executor);
     settings.anyhow = [&](std::span<const char> open, Region& region) {
       return map_anyhow(context.surface, open, context.stop, region);
     };
-    partition = merge_regions(own, joiner, std::move(partition), settings, executor);
+    partition = merge_regions(context, joiner, std::move(partition), settings, executor);
   }
   return partition;
+}
+
+/// To the allowed number of regions. Where these have much distortion, or maps that overlap, the
+/// same is tried from other partitions, since two regions may fit together nowhere. The one with
+/// the least excess stays.
+Partition merge_to_limit(const MergeContext& context, std::span<const Partition* const> starts,
+                         Index most_regions, Executor& executor) {
+  const MergeContext own{context.surface, nullptr, nullptr, context.stop};
+  Partition best;
+  double least = std::numeric_limits<double>::infinity();
+  int seed = 0;
+  for (const Partition* start : starts) {
+    if (least <= kLittleExcess) break;
+    Partition merged = merge_by_force(own, *start, most_regions, seed++, executor);
+    const double excess = total_excess(merged.regions).worst();
+    if (excess < least || best.regions.empty()) best = std::move(merged), least = excess;
+  }
+  return best;
 }
 
 }  // namespace
@@ -80,7 +100,7 @@ Segments SurfaceSegmentation::first(double excess) {
                       search::SearchPlan{search_extent(rules_.effort), steps_}, executor_);
   competing_ = search.merge_greedily();
   search.search_neighbourhoods(competing_);
-  best_ = search.bisect_regions(finish(competing_));
+  best_ = search.bisect_regions(finish(competing_), rules_.most_regions);
   search::shorten_in_parts(context_, settings, best_.partition);
   return segments_of(best_.partition);
 }
@@ -116,7 +136,7 @@ std::optional<Segments> SurfaceSegmentation::loosen(double excess) {
   search.forbid_seams_from(seam);
   search::Candidate next = finish(std::move(all));
   if (next.cost.length < seam) {
-    next = search.bisect_regions(std::move(next));
+    next = search.bisect_regions(std::move(next), rules_.most_regions);
     search::shorten_in_parts(context_, settings_for(excess), next.partition);
     next = search.price(std::move(next));
   }
@@ -142,7 +162,12 @@ Segments SurfaceSegmentation::merge_quickly(const MergeSettings& settings) {
 }
 
 Segments SurfaceSegmentation::segments_of(Partition best) const {
-  best = merge_to_limit(context_, std::move(best), rules_.most_regions, executor_);
+  if (best.regions.size() > static_cast<std::size_t>(rules_.most_regions)) {
+    std::vector<const Partition*> starts{&best};
+    if (!competing_.empty()) starts.insert(starts.end(), 3, &competing_.front().partition);
+    starts.insert(starts.end(), 2, &partition_);
+    best = merge_to_limit(context_, starts, rules_.most_regions, executor_);
+  }
   Segments segments{.regions = {},
                     .open = {},
                     .excess = total_excess(best.regions),

@@ -57,7 +57,7 @@ class Bisection {
     return from_tip;
   }
 
-  /// Of all cuts at one distance: the shortest for the area of the smaller part (Cheeger's ratio).
+  /// Of all cuts at one distance: the cheapest for the area of the smaller part (Cheeger's ratio).
   [[nodiscard]] std::vector<char> cut_at_neck(const std::vector<double>& from_tip) const {
     std::vector<std::size_t> order(from_tip.size());
     std::iota(order.begin(), order.end(), 0);
@@ -71,7 +71,8 @@ class Bisection {
       is_near[order[n]] = 1;
       near += surface_.area(region_.faces[order[n]]);
       const double smaller = std::min(near, all - near);
-      if (smaller < kLeastPart * all || rounded(width / smaller) >= least) continue;
+      const bool is_tie = n + 1 < order.size() && from_tip[order[n + 1]] == from_tip[order[n]];
+      if (is_tie || smaller < kLeastPart * all || rounded(width / smaller) >= least) continue;
       least = rounded(width / smaller);
       cut = n + 1;
     }
@@ -84,7 +85,7 @@ class Bisection {
     double change = 0;
     for (Index h = 3 * region_.faces[k]; h < 3 * region_.faces[k] + 3; ++h)
       if (const std::optional<std::size_t> other = across(h))
-        change += is_near[*other] != 0 ? -surface_.length[h] : surface_.length[h];
+        change += is_near[*other] != 0 ? -surface_.seam_cost[h] : surface_.seam_cost[h];
     return change;
   }
 
@@ -114,10 +115,10 @@ class Bisection {
       for (Index h = 3 * region_.faces[k]; h < 3 * region_.faces[k] + 3; ++h) {
         const std::optional<std::size_t> other = across(h);
         if (!other) continue;
-        const double way = own + (middle(k) - middle(*other)).norm();
-        if (!(way < distance[*other])) continue;
-        distance[*other] = way;
-        front.push({way, *other});
+        const double reached = own + (middle(k) - middle(*other)).norm();
+        if (!(reached < distance[*other])) continue;
+        distance[*other] = reached;
+        front.push({reached, *other});
       }
     }
     for (double& d : distance) d = rounded(d);
@@ -132,10 +133,11 @@ class Bisection {
 
 }  // namespace
 
-std::optional<Partition> bisect(const MergeContext& context, const Partition& partition,
-                                std::size_t k, std::size_t way) {
+std::optional<Partition> bisect(const MergeContext& context, const MergeSettings& settings,
+                                const Partition& partition, std::size_t k, std::size_t way) {
   const SegmentationMesh& surface = context.surface;
-  const Region& whole = partition.regions[k];
+  const MappedRegion& whole = partition.regions[k];
+  const double most = std::max(settings.cap, whole.mean_excess());
   const std::vector<char> half = Bisection(surface, partition, whole).find(way);
   std::array<MappedRegion, 2> parts;
   for (std::size_t f = 0; f < half.size(); ++f) {
@@ -146,9 +148,8 @@ std::optional<Partition> bisect(const MergeContext& context, const Partition& pa
   }
   for (MappedRegion& part : parts) {
     if (part.faces.empty()) return std::nullopt;
-    const TestRules trial{.most_excess = std::numeric_limits<double>::infinity(),
-                          .stop = context.stop,
-                          .memory = context.failures};
+    const TestRules trial{
+        .most_excess = most * part.area, .stop = context.stop, .memory = context.failures};
     const TestResult result = test_parameterization(surface, partition.open, trial, part);
     if (context.progress != nullptr) context.progress->add(part.faces.size());
     if (result.verdict != Verdict::sound) return std::nullopt;

@@ -1,8 +1,8 @@
 // The part of merge_search.hpp that takes large regions apart where the page stays empty.
 //
-// One half at a time leads nowhere where several long regions each need the whole width of the
-// page: it is no smaller before all of them are in halves. So a page that is far from full is worth
-// a few halves in vain, of the longest region each.
+// One cut at a time leads nowhere where several long regions each need the whole width of the
+// page: it is no smaller before all of them are cut. So a page that is far from full is worth a few
+// cuts in vain, the cheapest each.
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -18,7 +18,7 @@
 namespace unwrapd::segment::search {
 namespace {
 
-constexpr int kHalvesInVain = 4;  // that are tried where a page is far from full
+constexpr int kCutsInVain = 4;  // that are tried where a page is far from full
 constexpr double kMuchEmptiness = 0.2;
 constexpr double kNearlyAsLong = 0.7;  // of the longest region
 constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -53,30 +53,32 @@ bool MergeSearch::is_far_from_full(const PartitionCost& cost) {
   return cost.all - cost.seams > kMuchEmptiness * kCostOfEmptiness;
 }
 
-/// Each way to part one of the longest regions, with its cost.
-std::vector<Candidate> MergeSearch::all_halves(const Candidate& whole) {
+/// The ways to part one of the longest regions that have sound maps, with their costs. Of those
+/// whose seams cost the same, one.
+std::vector<Candidate> MergeSearch::all_parted(const Candidate& whole) {
   const std::vector<std::size_t> longest = long_regions(whole.partition.regions);
-  std::vector<Candidate> halved =
-      solve::parallel_map<Candidate>(longest.size() * kWaysToBisect, executor_, [&](std::size_t k) {
-        return with_halves(whole, longest[k / kWaysToBisect], k % kWaysToBisect);
-      });
-  learn(halved);
-  halved = distinct(std::move(halved));
+  std::vector<Candidate> all = solve::parallel_map<Candidate>(
+      longest.size() * kWaysToBisect, executor_,
+      [&](std::size_t k) { return parted(whole, longest[k / kWaysToBisect], k % kWaysToBisect); });
+  learn(all);
+  all = distinct(std::move(all));
   const double limit = is_far_from_full(whole.cost) ? kAny : whole.cost.all;
-  return solve::parallel_map<Candidate>(halved.size(), executor_, [&](std::size_t k) {
-    return price_halves(std::move(halved[k]), limit);
-  });
+  return solve::parallel_map<Candidate>(
+      all.size(), executor_, [&](std::size_t k) { return price_parted(std::move(all[k]), limit); });
 }
 
-Candidate MergeSearch::bisect_regions(Candidate whole) {
-  Candidate best = price_halves(std::move(whole), kAny), now = best;
-  for (int in_vain = 0; now.cost.all > now.cost.seams;) {
-    std::vector<Candidate> halved = all_halves(now);
-    const auto next = std::ranges::min_element(halved, std::less(),
+Candidate MergeSearch::bisect_regions(Candidate whole, Index most) {
+  Candidate best = price_parted(std::move(whole), kAny), now = best;
+  const auto may_be_cut = [&] {
+    return now.cost.all > now.cost.seams && std::cmp_less(now.partition.regions.size(), most);
+  };
+  for (int in_vain = 0; may_be_cut();) {
+    std::vector<Candidate> all = all_parted(now);
+    const auto next = std::ranges::min_element(all, std::less(),
                                                [](const Candidate& own) { return own.cost.all; });
-    if (next == halved.end()) break;
+    if (next == all.end() || next->cost.all == kAny) break;
     const bool is_better = next->cost.all < best.cost.all;
-    if (!is_better && (in_vain == kHalvesInVain || !is_far_from_full(now.cost))) break;
+    if (!is_better && (in_vain == kCutsInVain || !is_far_from_full(now.cost))) break;
     in_vain = is_better ? 0 : in_vain + 1;
     now = std::move(*next);
     if (is_better) best = now;

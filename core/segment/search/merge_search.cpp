@@ -246,18 +246,18 @@ Candidate MergeSearch::remerge_part(const Candidate& best, std::size_t number) c
   return price(std::move(again), best.cost.all, kUsual);
 }
 
-/// Nothing where the region is too small for that, or a half has no sound map.
-Candidate MergeSearch::with_halves(const Candidate& whole, std::size_t k, std::size_t way) const {
+/// With region k in two parts; nothing where it is too small for that, or a part has no sound map.
+Candidate MergeSearch::parted(const Candidate& whole, std::size_t k, std::size_t way) const {
   if (whole.partition.regions[k].area < kLargeRegion) return {};
   return track([&](const MergeContext& context) {
-    std::optional<Partition> cut = bisect(context, whole.partition, k, way);
+    std::optional<Partition> cut = bisect(context, settings_, whole.partition, k, way);
     if (!cut) return Partition{};
     shorten_between(context, settings_, k, cut->regions.size() - 1, *cut);
     return std::move(*cut);
   });
 }
 
-Candidate MergeSearch::price_halves(Candidate own, double limit) const {
+Candidate MergeSearch::price_parted(Candidate own, double limit) const {
   return price(std::move(own), limit, kAcross);
 }
 

@@ -54,10 +54,10 @@ class MergeSearch {
   /// The cheapest candidate, with its cost.
   [[nodiscard]] Candidate cheapest(std::vector<Candidate> all) const;
 
-  /// Bisects the region whose halves make the partition cheapest, as long as that helps: rings and
+  /// Cuts a region in two where that makes the partition cheapest, as long as it helps: rings and
   /// stars leave a page emptier than necessary. Then closes slits that are no longer needed. The
-  /// cost is not that of the result: see price().
-  [[nodiscard]] Candidate bisect_regions(Candidate whole);
+  /// cost is not that of the result: see price(). most: regions that cuts may lead to.
+  [[nodiscard]] Candidate bisect_regions(Candidate whole, Index most);
 
   /// The candidate with its cost, which takes a rough packing.
   [[nodiscard]] Candidate price(Candidate own) const;
@@ -81,9 +81,9 @@ class MergeSearch {
   [[nodiscard]] Candidate remerge_part(const Candidate& best, std::size_t number) const;
   /// Whether bisecting goes on though it gains nothing yet.
   static bool is_far_from_full(const PartitionCost& cost);
-  [[nodiscard]] Candidate price_halves(Candidate own, double limit) const;
-  [[nodiscard]] Candidate with_halves(const Candidate& whole, std::size_t k, std::size_t way) const;
-  std::vector<Candidate> all_halves(const Candidate& whole);
+  [[nodiscard]] Candidate price_parted(Candidate own, double limit) const;
+  [[nodiscard]] Candidate parted(const Candidate& whole, std::size_t k, std::size_t way) const;
+  std::vector<Candidate> all_parted(const Candidate& whole);
   [[nodiscard]] std::vector<Candidate> distinct(std::vector<Candidate> all) const;
   [[nodiscard]] Candidate price(Candidate own, double limit, CostRules rules) const;
 

@@ -1,6 +1,7 @@
 // Pages by material and by mesh, through the front door.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -101,6 +102,18 @@ TEST(PageGroups, OfASceneHaveNoNamesAndOneGroupIsPackedAsTheScene) {
   EXPECT_TRUE(scene.report.page_names.empty());
   EXPECT_EQ(scene.report.pages, 1);
   EXPECT_EQ(unwrapped({plain}, PageGroup::material).surfaces[0].uv, scene.surfaces[0].uv);
+}
+
+TEST(PageGroups, OneGroupIsTold) {
+  const auto is_told = [](const Unwrapped& u) {
+    return std::ranges::any_of(u.report.notes, [](const Note& note) {
+      return note.code == NoteCode::option_unused && note.text.starts_with("The option group=");
+    });
+  };
+  for (const PageGroup group : {PageGroup::material, PageGroup::mesh})
+    EXPECT_TRUE(is_told(unwrapped({patched_ball(1)}, group)));
+  EXPECT_FALSE(is_told(unwrapped({patched_ball(1)}, PageGroup::scene)));
+  EXPECT_FALSE(is_told(unwrapped({patched_ball(2)}, PageGroup::material)));
 }
 
 TEST(PageGroups, RepackedIslandsEndWhereMaterialsDo) {

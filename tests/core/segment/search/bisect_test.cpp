@@ -16,6 +16,8 @@
 namespace unwrapd::segment::search {
 namespace {
 
+const MergeSettings kLoose{.budget = 1, .cap = 1};
+
 /// A flat ring that is open to the right.
 SegmentationMesh open_ring() {
   TriMesh mesh = shapes::grid(60, 4);
@@ -73,13 +75,35 @@ TEST(Bisect, CutsAtTheNeckBeforeATip) {
     return x < 32 || (x < 40 ? std::abs(y - 8) < 2 : std::abs(y - 8) < 4);
   });
   const double all = 32 * 16 + 8 * 4 + 8 * 8;
-  const auto cut = bisect({surface}, whole(surface), 0, 1);
+  const auto cut = bisect({surface}, kLoose, whole(surface), 0, 1);
   ASSERT_TRUE(cut);
   EXPECT_GT(smaller_part(*cut), 8 * 8 / all - 0.01);
   EXPECT_LT(smaller_part(*cut), (8 * 4 + 8 * 8) / all + 0.01);
-  const auto halfway = bisect({surface}, whole(surface), 0);
+  const auto halfway = bisect({surface}, kLoose, whole(surface), 0);
   ASSERT_TRUE(halfway);
   EXPECT_GT(smaller_part(*halfway), 0.3);
+}
+
+/// The square beyond the bridge is a dome: cut off, it has all of the distortion for itself.
+TEST(Bisect, MakesNoPartMoreDistortedThanARegionMayBe) {
+  TriMesh mesh = shapes::grid(48, 16, 48, 16);
+  std::erase_if(mesh.faces, [&](const Triangle& face) {
+    const Vec3& p = mesh.positions[std::size_t(face[0])];
+    return p.x() >= 32 && std::abs(p.y() - 8) > (p.x() < 38 ? 2 : 4);
+  });
+  for (Vec3& p : mesh.positions)
+    p.z() = 1.5 * std::max(0., 1 - std::pow(std::hypot(p.x() - 44, p.y() - 8) / 4, 2));
+  const SegmentationMesh surface =
+      make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
+  const auto cut = bisect({surface}, kLoose, whole(surface), 0, 1);
+  ASSERT_TRUE(cut);
+  const double worst = std::ranges::max(cut->regions, {}, &MappedRegion::mean_excess).mean_excess();
+  ASSERT_GT(worst, 1e-3);
+  MergeSettings strict = kLoose;
+  strict.cap = 0.9 * worst;
+  EXPECT_FALSE(bisect({surface}, strict, whole(surface), 0, 1));
+  strict.cap = 1.1 * worst;
+  EXPECT_TRUE(bisect({surface}, strict, whole(surface), 0, 1));
 }
 
 /// A square with a stub of a twentieth of the area.
@@ -87,7 +111,7 @@ TEST(Bisect, CutsNothingOffThatIsTooSmall) {
   const SegmentationMesh surface =
       cut_out(16, 12, [](double x, double y) { return x < 12 || std::abs(y - 6) < 1; });
   for (std::size_t way = 1; way < kWaysToBisect; ++way) {
-    const auto cut = bisect({surface}, whole(surface), 0, way);
+    const auto cut = bisect({surface}, kLoose, whole(surface), 0, way);
     ASSERT_TRUE(cut) << way;
     EXPECT_GE(smaller_part(*cut), 0.08 - 1e-9) << way;
   }
@@ -106,15 +130,15 @@ TEST(Bisect, TakesATailOffWhereAPageStaysEmpty) {
   ProgressEstimate untold({});
   FailedTrials failures;
   SerialExecutor serial;
-  MergeSearch search({surface, &untold, &failures}, tailed, {.budget = 1, .cap = 1}, {}, serial);
-  const Partition found = search.bisect_regions({tailed}).partition;
+  MergeSearch search({surface, &untold, &failures}, tailed, kLoose, {}, serial);
+  const Partition found = search.bisect_regions({tailed}, 9).partition;
   EXPECT_EQ(found.regions.size(), 3U);
   EXPECT_NEAR(std::ranges::max(found.regions, {}, &MappedRegion::area).area, 24 * 24 / all, 0.01);
 }
 
 TEST(Bisect, CutsARingAcrossWhereItIsFarthestFromItsEnds) {
   const SegmentationMesh surface = open_ring();
-  const auto cut = bisect({surface}, whole(surface), 0);
+  const auto cut = bisect({surface}, kLoose, whole(surface), 0);
   ASSERT_TRUE(cut);
   ASSERT_EQ(cut->regions.size(), 2U);
   for (const MappedRegion& half : cut->regions) {
@@ -136,7 +160,7 @@ TEST(Bisect, LeavesATriangleAlone) {
   const TriMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   const SegmentationMesh surface =
       make_segmentation_mesh(mesh, build_halfedges(mesh.faces, mesh.vertex_count()));
-  EXPECT_FALSE(bisect({surface}, whole(surface), 0));
+  EXPECT_FALSE(bisect({surface}, kLoose, whole(surface), 0));
 }
 
 /// Four strips that are as long as the page is wide: it is no smaller before all are in halves.
@@ -149,8 +173,8 @@ TEST(Bisect, HalvesAllLongRegionsWhereOneAloneGainsNothing) {
   ProgressEstimate untold({});
   FailedTrials failures;
   SerialExecutor serial;
-  MergeSearch search({surface, &untold, &failures}, strips, {}, {}, serial);
-  EXPECT_GE(search.bisect_regions({strips}).partition.regions.size(), 8U);
+  MergeSearch search({surface, &untold, &failures}, strips, kLoose, {}, serial);
+  EXPECT_GE(search.bisect_regions({strips}, 99).partition.regions.size(), 8U);
 }
 
 /// In two rings, a longer and a shorter one, it fills less than half of one.
