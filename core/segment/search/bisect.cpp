@@ -16,6 +16,7 @@ namespace unwrapd::segment::search {
 namespace {
 
 constexpr double kLeastPart = 0.08;  // of the region's area, before a neck
+constexpr int kPasses = 10;          // over all faces
 
 class Bisection {
  public:
@@ -30,7 +31,7 @@ class Bisection {
 
   /// Of each face of the region: 0 or 1.
   [[nodiscard]] std::vector<char> find(std::size_t way) const {
-    return way == 0 ? halves() : cut_at_neck(distances_from_tip(way));
+    return smoothed(way == 0 ? halves() : cut_at_neck(distances_from_tip(way)));
   }
 
  private:
@@ -78,6 +79,26 @@ class Bisection {
     }
     for (std::size_t n = cut; n < order.size(); ++n) is_near[order[n]] = 0;
     return is_near;
+  }
+
+  /// Faces go over to the other part where that makes the cut cheaper, so that its ends lie well,
+  /// too: those stay where it is drawn straight.
+  [[nodiscard]] std::vector<char> smoothed(std::vector<char> part) const {
+    bool is_changed = true;
+    for (int pass = 0; pass < kPasses && is_changed; ++pass) {
+      is_changed = false;
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        std::array<double, 2> cost{};  // of the sides to each part
+        for (Index h = 3 * region_.faces[k]; h < 3 * region_.faces[k] + 3; ++h)
+          if (const std::optional<std::size_t> other = across(h))
+            cost[static_cast<std::size_t>(part[*other])] += surface_.seam_cost[h];
+        const auto own = static_cast<std::size_t>(part[k]);
+        if (rounded(cost[own]) >= rounded(cost[1 - own])) continue;
+        part[k] = static_cast<char>(1 - own);
+        is_changed = true;
+      }
+    }
+    return part;
   }
 
   /// Of the cut around the near faces, when face k is added to them.
