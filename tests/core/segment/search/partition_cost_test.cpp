@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "tests/core/shapes.hpp"
 
 namespace unwrapd::segment::search {
@@ -58,20 +56,6 @@ TEST(PartitionCost, CountsSeamsChartsAndWhatThePageLeavesEmpty) {
   EXPECT_GT(share, 0.3);  // 2 charts 8 long and 1 high fill 1/4 of a page
   EXPECT_LT(share, 0.5);
   EXPECT_EQ(strip.cost({.page_area = 2, .wanted_fill = 0.7}).all, none.seams);
-}
-
-/// Coordinates of regular meshes lie where cells end.
-TEST(PartitionCost, IsTheSameWhateverTheLastDigitsOfAMap) {
-  const double cost = Strip().cost({.wanted_fill = 0.7}).all;
-  std::mt19937 random(1);
-  for (int k = 0; k < 20; ++k) {
-    Strip strip;
-    for (MappedRegion& region : strip.halves.regions)
-      for (CornerUv& corners : region.uv)
-        for (Vec2& uv : corners)
-          uv += 1e-13 * Vec2(double(random() % 3) - 1, double(random() % 3) - 1);
-    EXPECT_EQ(strip.cost({.wanted_fill = 0.7}).all, cost) << k;
-  }
 }
 
 TEST(PartitionCost, TakesLessForACreaseButTellsItsLength) {
